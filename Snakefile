@@ -21,6 +21,7 @@ report: "workflow/report/workflow.rst"
 rule all:
     default_target: True
     input:
+        # By default, a preset that is not `whole`, such as draft, makes only figures.
         EVERYTHING if ACCURACY.get("whole", True) else DRAFT,
 
 

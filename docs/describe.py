@@ -16,7 +16,7 @@ import yaml
 
 from slippulse.model.scene import SCENE_NUMBERS
 from slippulse_paper.configuration.read import read_overlay
-from slippulse_paper.configuration.refusals import json_schema, resolved, words
+from slippulse_paper.configuration.refusals import dereferenced, json_schema, words_for
 
 README = "config/README.md"
 SCHEMA = "workflow/schemas/config.schema.yaml"
@@ -50,14 +50,14 @@ def rows(schema: dict[str, Any], values: Mapping | None = None, prefix: str = ""
     prefix : the keys above the mapping, with dots
     """
     for name, key in schema["properties"].items():
-        inner = resolved(key)
+        inner = dereferenced(key)
         if name not in schema.get("required", ()):
             default = _default(key)
         elif values is None or inner.get("type") == "object":
             default = "required"
         else:
             default = _short(values[name])
-        cells = (f"`{prefix}{name}`", key["description"], words(key), default)
+        cells = (f"`{prefix}{name}`", key["description"], words_for(key), default)
         yield f"| {' | '.join(map(_escaped, cells))} |"
         if "properties" in inner and schema is not json_schema():
             yield from rows(inner, values and values[name], f"{prefix}{name}.")
@@ -66,7 +66,7 @@ def rows(schema: dict[str, Any], values: Mapping | None = None, prefix: str = ""
 def _default(key: Mapping) -> str:
     """Return the default of an optional key as text."""
     default = key.get("default")
-    has_default = resolved(dict(key)).get("type") != "object" and default not in (None, [])
+    has_default = dereferenced(dict(key)).get("type") != "object" and default not in (None, [])
     return _short(default) if has_default else "none"
 
 

@@ -39,8 +39,8 @@ PATHS_WITHOUT_RULES = ("logs", "benchmarks", "reference", "tutorial", "site")
 PATHS_WITHOUT_RULES += ("compare.html", "compare.csv")
 
 
-def options_of(make_options: Mapping[str, str]) -> list[str]:
-    """Return the options of Snakemake that correspond to the options of make.
+def snakemake_options(make_options: Mapping[str, str]) -> list[str]:
+    """Return the options of Snakemake for the options PRESET, ALLOW_LARGE and OVERLAY of make.
 
     Exits with the reason if the overlay cannot be read.
     """
@@ -80,13 +80,14 @@ def full_target(target: str) -> str:
     """
     name, _, ending = target.removeprefix("results/figures/").partition(".")
     modules = PROJECT / "src/slippulse_paper/figures"
-    # A figure of the paper may be given by its number alone.
+    # A figure of the paper may be given by its number alone. Its module has the full name.
     numbered = re.fullmatch(r"fig(?:ure)?_?0*(\d+)", name)
     if numbered:
         number = int(numbered[1])
         for path in modules.glob(f"fig{number:02d}_*.py"):
             name = path.stem
     has_module = name.startswith(("fig", "study_")) and (modules / f"{name}.py").exists()
+    # The figures of user-defined sweeps have no modules of their own.
     is_figure = has_module or name.startswith("sweep_")
     return f"results/figures/{name}.{ending or 'png'}" if is_figure else target
 
@@ -125,9 +126,10 @@ def clean_up_after_kill() -> TextIO:
 
 
 def changed_results() -> dict[str, str]:
-    """Return the results whose change Snakemake does not notice, with the reasons.
+    """Return the results that must be made again although Snakemake does not notice it.
 
-    Exits if a folder has taken the place of a file.
+    The result maps each of them to the reason: for example, it was edited by hand. Exits if a
+    folder has taken the place of a file.
     """
     from slippulse_paper.records.job_records import RecordedFiles
 
@@ -143,25 +145,28 @@ def options_for_changed_results(options: list[str], targets: list[str]) -> list[
 
     Prints how many results these are, with the first one and its reason.
     """
-    problems = changed_results()
-    if not problems:
+    reasons = changed_results()
+    if not reasons:
         return []
-    # If Snakemake refuses the targets, the run itself prints the reason.
-    listing = summary(options, targets, stderr=subprocess.DEVNULL)
+    # If Snakemake refuses the targets, the run itself prints the reason later.
+    listing = list_required_files(options, targets, stderr=subprocess.DEVNULL)
     required_outputs = {line.partition("\t")[0] for line in listing.stdout.splitlines()}
-    names = [name for name in problems if name in required_outputs]
+    names = [name for name in reasons if name in required_outputs]
     if not names:
         return []
     first = names[0]
     results_are = "1 result is" if len(names) == 1 else f"{len(names)} results are"
-    print(f"{results_are} made again: {first}: {problems[first]}", file=sys.stderr)
+    print(f"{results_are} made again: {first}: {reasons[first]}", file=sys.stderr)
     return ["--forcerun", *names]
 
 
-def summary(
+def list_required_files(
     options: list[str], targets: list[str], stderr: int | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Run Snakemake with --summary, which lists each file that the targets need, with its state."""
+    """Run Snakemake with --summary, which lists each file that the targets need, with its state.
+
+    stderr : where messages of Snakemake go, as in `subprocess.run`
+    """
     summary_options = ["--profile", "none", "--workflow-profile", "none", "--summary"]
     command = [sys.executable, "-m", "snakemake", *summary_options, *options, "--", *targets]
     return subprocess.run(command, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False)
@@ -174,23 +179,27 @@ def closing_text(targets: list[str], make_options: Mapping[str, str]) -> str:
     """
     from slippulse_paper.configuration.read import read_config, read_overlay
 
+    # The configuration of the run.
     shipped = read_overlay(PROJECT / "config/config.yaml")
     overlays = [read_overlay(make_options["OVERLAY"])] if make_options.get("OVERLAY") else []
     preset = {"preset": make_options["PRESET"]} if make_options.get("PRESET") else {}
     config = read_config(shipped, overlays, preset, every_run=False)
-    # By default, a draft makes only the figures of the paper.
-    if targets in ([], ["all"]) and not config.presets[config.preset].whole:
+    # Without targets, a preset that is not `whole`, such as draft, makes only the paper's figures.
+    makes_everything = config.presets[config.preset].whole
+    if targets in ([], ["all"]) and not makes_everything:
         return "Open results/figures; TARGET=everything also makes studies, claims and report"
-    is_whole = {*targets} <= {"all", "everything", "results/index.html"}
+    has_index = {*targets} <= {"all", "everything", "results/index.html"}
     text = ""
-    if is_whole or any(target.startswith("results/claims.") for target in targets):
+    if has_index or any(target.startswith("results/claims.") for target in targets):
         text = verdicts_text(shipped, config.given())
-    end = "Open results/index.html" if is_whole else f"Made: {', '.join(targets)}"
+    end = "Open results/index.html" if has_index else f"Made: {', '.join(targets)}"
     return text + end
 
 
 def verdicts_text(shipped: Mapping, config: Mapping) -> str:
     """Return lines with the number of claims of each verdict, and with the changed verdicts.
+
+    shipped, config : the shipped configuration, and that of the run
 
     The verdicts are compared with the shipped ones only if the configuration differs from the
     shipped one in more than the preset.
@@ -266,18 +275,20 @@ def end_on_signals(run: Run) -> None:
 def replicate(make_options: Mapping[str, str]) -> int:
     """Make the targets, print what to open, and return the exit code."""
     began = time.monotonic()
-    targets, options = targets_of(make_options), options_of(make_options)
+    targets, options = targets_of(make_options), snakemake_options(make_options)
     has_results = (RESULTS / "provenance.json").exists()
     if make_options.get("OVERLAY") and has_results and not KEPT_RESULTS.exists():
         line = "To compare these results with the new ones, stop now, copy them, and start again: "
         print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
+    # Run Snakemake.
     lock = clean_up_after_kill()
     cores = ["--cores", make_options.get("CORES") or "2"]
-    changed = options_for_changed_results(options, targets)
-    run = Run([*cores, *options, *changed, "--", *targets])
+    options += options_for_changed_results(options, targets)
+    run = Run([*cores, *options, "--", *targets])
     end_on_signals(run)
     code = run.wait()
     lock.close()
+    # If the run has failed, a target that does not exist may be the reason.
     unknown = [target for target in targets if code and is_unknown(target)]
     if unknown:
         names = ", ".join(unknown)
@@ -298,7 +309,11 @@ def result_options(make_options: Mapping[str, str]) -> dict[str, str]:
 
 
 def record_run(make_options: Mapping[str, str], targets: list[str]) -> None:
-    """Write the options and targets of a run to a file, so that `verify` can use them."""
+    """Write the options and targets of a run to a file, so that `verify` can use them.
+
+    Of the targets, only "everything" is recorded. After a run with other targets, `verify` examines
+    those that are made by default.
+    """
     recorded_targets = ["everything"] if "everything" in targets else []
     last_run = {"options": result_options(make_options), "targets": recorded_targets}
     LAST_RUN.write_text(json.dumps(last_run), encoding="utf-8")
@@ -326,12 +341,17 @@ def verify(make_options: Mapping[str, str]) -> int:
     A result is printed if Snakemake would make it again, if it was changed by hand, or if no job
     has recorded it. The exit code is 1 if there is any such result.
     """
+    from slippulse_paper.records.job_records import RecordedFiles
+
     options, targets = verified_run(make_options)
-    listing = summary(options_of(options), targets)
+    listing = list_required_files(snakemake_options(options), targets)
     if listing.returncode:
         return listing.returncode
-    problems = dict(outdated(listing.stdout))
-    problems |= dict(unrecorded(problems))
+    recorded = RecordedFiles(RESULTS)
+    outdated = dict(outdated_files(listing.stdout))
+    unrecorded = files_without_job({*recorded.states(), *outdated})
+    problems = outdated | dict(recorded.problems())
+    problems |= dict.fromkeys(unrecorded, "no job has recorded it")
     for name, reason in sorted(problems.items()):
         print(f"{name}: {reason}")
     if not problems:
@@ -349,11 +369,11 @@ def rulegraph(make_options: Mapping[str, str]) -> int:
     ]
     quiet = ["--profile", "none", "--workflow-profile", "none", "--quiet", "all"]
     graph = ["--rulegraph", "mermaid-js", "--", *targets]
-    command = [sys.executable, "-m", "snakemake", *quiet, *options_of(make_options), *graph]
+    command = [sys.executable, "-m", "snakemake", *quiet, *snakemake_options(make_options), *graph]
     return subprocess.run(command, check=False).returncode
 
 
-def outdated(summary: str) -> Iterable[tuple[str, str]]:
+def outdated_files(summary: str) -> Iterable[tuple[str, str]]:
     """Yield the files that Snakemake would make again, with the reasons.
 
     ``summary`` is the text that Snakemake prints with --summary.
@@ -366,25 +386,22 @@ def outdated(summary: str) -> Iterable[tuple[str, str]]:
             yield name, "made from files that are not up to date" if status == "ok" else status
 
 
-def unrecorded(outdated: Mapping[str, str]) -> Iterable[tuple[str, str]]:
-    """Yield the files that differ from what their jobs wrote, and the files that no job wrote.
+def files_without_job(known_files: set[str]) -> set[str]:
+    """Return the files in the folder of results that no job of this workflow has made.
 
-    outdated : files that have another problem already, which are not listed as unrecorded
+    known_files : files that are left out, since they have a record or another problem
     """
-    from slippulse_paper.records.job_records import RecordedFiles, made_without_step
+    from slippulse_paper.records.job_records import made_without_step
 
-    recorded = RecordedFiles(RESULTS)
-    yield from recorded.problems()
-    states = recorded.states()
-    unknown = []
-    for path in sorted(RESULTS.rglob("*")):
-        name, parts = str(path), path.relative_to(RESULTS).parts
+    unknown_files = set()
+    for path in RESULTS.rglob("*"):
+        parts = path.relative_to(RESULTS).parts
         is_hidden = any(part.startswith(".") for part in parts)
-        is_result = path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES
-        if is_result and name not in states and name not in outdated:
-            unknown.append(name)
-    for name in sorted({*unknown} - made_without_step(unknown)):
-        yield name, "no job has recorded it"
+        if path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES:
+            unknown_files.add(str(path))
+    unknown_files -= known_files
+    # The user's own rules write no records.
+    return unknown_files - made_without_step(unknown_files)
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ def test_a_note_names_altered_keys_that_a_figure_reads_and_nothing_else():
     assert altered.note([], ["figures.fig01_system_sketch"]) == "altered: strip_width = 0.5"
     assert altered.note([], ["figures.fig07_damage_zone"]) == ""
     altered = alterations({})
-    assert not altered.overridden_defaults() and not any(altered.simulations.values())
+    assert not altered.overridden_defaults() and not any(altered.changes_of.values())
 
 
 def test_simulations_that_do_not_take_a_default_are_named():

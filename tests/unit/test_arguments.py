@@ -210,7 +210,7 @@ CALLS = [
     ("tau_barrier: 0.5; allowed", theory.barrier_depth_estimate, 0.5, 0.5, 0.65),
     ("tau0: 0.0; allowed", theory.uniform_transition_time, 0.0, 0.65),
     ("weakening: 0.4, at tau0 = 0.5", theory.weakening_pulse, 0.5, 2 / 3, 0.05, 0.4),
-    ("fronts that stay within 20000", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
+    ("take at most 20000 panels", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
 ]
 REFUSED = [(named, partial(function, *arguments)) for named, function, *arguments in CALLS]
 for cases, call in (

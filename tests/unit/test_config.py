@@ -10,7 +10,7 @@ import tolerances as tol
 import slippulse as sp
 from slippulse.model.cost import bound_cost
 from slippulse_paper.configuration.expand import expand
-from slippulse_paper.configuration.promised_spacings import promised
+from slippulse_paper.configuration.promised_spacings import with_promised_spacings
 from slippulse_paper.configuration.resolve import accuracy_of, resolve
 from slippulse_paper.configuration.schema import Configuration
 
@@ -86,10 +86,10 @@ def test_a_run_that_would_not_end_is_refused_before_it_starts():
     with pytest.raises(ValueError, match=f"^cost: up to .* bytes; {allowed}$"):
         sp.simulate(sp.Scene("stress", profile, 1.0, dx=0.01), samples)
     # The exact solution has a limit of its own.
-    with pytest.raises(ValueError, match="allowed: fronts that stay within 20000 panels"):
+    with pytest.raises(ValueError, match="allowed: paths that take at most 20000 panels"):
         sp.theory.Rupture(profile, 0.65, duration=1e6)
     rupture = sp.theory.Rupture(sp.Prestress(0.6, 0.5), 0.65, 0.1, duration=5e4)
-    refusal = "^duration: 50000 takes 1.3e.10; allowed: a time until which sticks are found"
+    refusal = "^duration: 50000, for which the search for sticks takes 1.3e.10 samples; allowed: "
     with pytest.raises(ValueError, match=refusal):
         _ = rupture.first_stick
 
@@ -135,20 +135,20 @@ def test_without_an_accuracy_no_spacing_changes(config):
 def test_with_an_accuracy_each_scene_has_its_own_spacing_but_not_by_the_textbook_scheme(config):
     simulation = config["simulations"]["scaling_displacement"]
     accuracy = accuracy_for(config, accuracy=1e-2)
-    scenes, _ = expand(promised(resolve(simulation, config["model"], accuracy)))
+    scenes, _ = expand(with_promised_spacings(resolve(simulation, config["model"], accuracy)))
     for scene in scenes:
         physics = {"boundary": scene.boundary, "prestress": scene.prestress, "gamma": scene.gamma}
         fields = "fields" in simulation["record"]
         expected = sp.settings_for(1e-2, **physics, damping_ratio=0.1, fields=fields)
         assert {key: getattr(scene, key) for key in expected} == pytest.approx(expected)
     block = resolve(simulation, config["model"], accuracy) | {"coarser": 2.0}
-    coarser, _ = expand(promised(block))
+    coarser, _ = expand(with_promised_spacings(block))
     assert [scene.dx for scene in coarser] == pytest.approx([2.0 * scene.dx for scene in scenes])
     model = config["model"] | {"scheme": "fixed_step"}
     accuracy = accuracy_for(config, accuracy=1e-2)
     block = resolve(config["simulations"]["steady_displacement"], model, accuracy)
     with pytest.raises(ValueError, match="scheme: 'fixed_step'; allowed: 'localised' if acc"):
-        promised(block)
+        with_promised_spacings(block)
 
 
 @pytest.mark.parametrize("name", ASKED)
@@ -159,7 +159,7 @@ def test_a_spacing_under_study_is_not_changed(config, name):
         simulation.pop("dx")
     before, _ = expand(resolve(simulation, config["model"], accuracy_for(config)))
     block = resolve(simulation, config["model"], accuracy_for(config, accuracy=1e-3))
-    after, _ = expand(promised(block))
+    after, _ = expand(with_promised_spacings(block))
     assert [scene.dx for scene in after] == [scene.dx for scene in before]
     assert math.isnan(block["accuracy"]["promise"])
     assert all(a.max_step <= b.max_step for a, b in zip(after, before, strict=True))

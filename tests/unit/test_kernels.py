@@ -35,8 +35,10 @@ def stick_times(coefficients, h: float, now: float = 0.0):
     """
     top = len(coefficients)
     motion, prediction = arrays.make_motion(top + 1, 3), arrays.make_scratch(3, top - 1).prediction
-    motion.w[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
-    from_python(stencils.compute_velocities)(motion.velocity, motion.w, 1, 2, h, top - 1)
+    motion.derivatives[1:, 1] = [c * math.factorial(k) for k, c in enumerate(coefficients)]
+    from_python(stencils.compute_velocities)(
+        motion.end_velocity, motion.derivatives, 1, 2, h, top - 1
+    )
     finite = from_python(event_prediction.predict_sticks)(motion, prediction, 1, 2, 1, now, h, top)
     return tuple(prediction.event_time[: prediction.event_count.n]) if finite else None
 
@@ -102,7 +104,11 @@ RELEASES = [
 def test_a_block_is_released_when_its_stress_passes_the_threshold(case):
     (height, speed, slowing), (h, now, release) = case[:3], case[3:]
     motion, prediction = arrays.make_motion(6, 5), arrays.make_scratch(5, 4).prediction
-    motion.w[arrays.VELOCITY, 1], motion.w[arrays.ACCELERATION, 1], motion.tau[2] = (
+    (
+        motion.derivatives[arrays.VELOCITY, 1],
+        motion.derivatives[arrays.ACCELERATION, 1],
+        motion.tau[2],
+    ) = (
         speed,
         -slowing,
         height,

@@ -14,11 +14,16 @@ from slippulse.model.measured_columns import RECORD_FOR
 from slippulse_paper.claims import rules
 from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
-from slippulse_paper.claims.evidence import Evidence, agreed_answers, exponent
+from slippulse_paper.claims.evidence import Evidence, agreed_answers, fit_exponent
 from slippulse_paper.claims.findings import findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
-from slippulse_paper.claims.paper_claims import SIMULATIONS, all_claims, claim_of, fields_of_claim
+from slippulse_paper.claims.paper_claims import (
+    SIMULATIONS,
+    all_claims,
+    fields_of_claim,
+    judge_claim,
+)
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
@@ -140,7 +145,7 @@ def test_the_last_release_of_a_lattice_decides_nothing_and_is_reported(over_all)
     last = [estimated(*known, fraction=LAST_RELEASE_FRACTION) for known in KNOWN_LENGTHS]
     claim = over_all(last)
     assert claim["verdict"] == DEPENDS and claim["choice"] == "" and "depends" not in claim["why"]
-    reported = "There the deviation is 14 % to 24 %"
+    reported = "For these combinations the deviation is 14 % to 24 %"
     assert reported in claim["why"] and "last release" not in over_all(LENGTHS)["why"]
 
 
@@ -181,7 +186,7 @@ def test_a_rule_that_fails_is_named(rule, reason):
     tables = evidence()
     tables.entries = entries
     with pytest.raises(ValueError, match=f"claims: rule of always: .*{reason}.*; allowed: the"):
-        claim_of(tables, "always")
+        judge_claim(tables, "always")
 
 
 def test_a_claim_without_a_number_names_the_flagged_runs(monkeypatch):
@@ -198,7 +203,7 @@ def test_a_claim_without_a_number_names_the_flagged_runs(monkeypatch):
     assert claim["why"] == f"{nothing} 1 of 4 runs of sweep are flagged (unresolved)" + (
         " and therefore not used."
     )
-    assert evidence().flags_behind(entry["source"]) == ""
+    assert evidence().sentence_on_flags(entry["source"]) == ""
 
 
 def test_no_claim_compares_a_function_with_itself(project):
@@ -268,7 +273,9 @@ def test_an_estimate_is_judged_by_its_median_not_by_the_worst_run():
 
 def test_a_scaling_is_judged_by_its_exponent():
     def power(measure):
-        known = exponent(evidence(measure).lattices("sweep"), "number", "paper", ["left"])
+        lattices = evidence(measure).lattices("sweep")
+        columns = {"measured": "number", "predicted": "paper", "varied_columns": ["left"]}
+        known = fit_exponent(lattices, **columns)
         measured, uncertainty = map(np.atleast_1d, known)
         numbers = {"predicted": np.ones(1), "measured": measured, "uncertainty": uncertainty}
         return Equation(tolerance=0.1, **numbers, counts={"runs": len(LEVELS)}).fields()
@@ -283,12 +290,13 @@ def test_a_scaling_is_judged_by_its_exponent():
 def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     sweep = evidence(lambda level, factor: level if factor == 1.0 or level != 0.6 else 0.0)
     runs = "sweep", "left > 0.3", "number > 0.5"
-    assert sweep.agreed(*runs) == [False, None, True]
-    assert sweep.agreed(*runs, ends=["arrested"]) == [False, True, True]
-    assert sweep.agreed(*runs, ends=["other"]) == [False, False, True]
+    assert sweep.holds_in_runs(*runs) == [False, None, True]
+    assert sweep.holds_in_runs(*runs, ends=["arrested"]) == [False, True, True]
+    assert sweep.holds_in_runs(*runs, ends=["other"]) == [False, False, True]
     # Where a lattice has not run long enough it is not asked.
-    assert sweep.agreed(*runs, "left < 0.7") == [False, None, None]
-    assert sweep.agreed("sweep", "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]) == [None]
+    assert sweep.holds_in_runs(*runs, "left < 0.7") == [False, None, None]
+    late = "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]
+    assert sweep.holds_in_runs("sweep", *late) == [None]
     assert agreed_answers([True, None, False], [True, None, True]) == [True, None, None]
 
 

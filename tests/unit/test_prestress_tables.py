@@ -283,3 +283,39 @@ def test_a_bad_table_is_refused_in_one_line(words):
     with pytest.raises(ValueError, match="allowed") as refusal:
         REFUSED[words]()
     assert words in str(refusal.value) and "\n" not in str(refusal.value)
+
+
+def test_the_balance_is_the_nearest_one_if_bumps_or_steps_balance_the_pre_stress_again():
+    """The rupture stops at the first position from which the integral to infinity is 0."""
+    level, bump = -0.5, ((-40.0, 40.0, 2.0),)
+    nearest = sp.theory.prestress_balance_position(sp.Prestress(level, 0.0))
+    assert sp.theory.prestress_balance_position(
+        sp.Prestress(level, 0.0, bumps=bump)
+    ) == pytest.approx(nearest)
+    table = ((-100.0, level), (0.0, level), (0.0, 0.0))
+    with_points = sp.Prestress(level, 0.0, points=table, bumps=bump)
+    assert sp.theory.prestress_balance_position(with_points) == pytest.approx(nearest)
+    steps = ((-9.0, 0.8), (-30.0, level))
+    assert sp.theory.prestress_balance_position(
+        sp.Prestress(level, 0.0, steps=steps)
+    ) == pytest.approx(nearest)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_balance_of_random_bumps_is_that_of_a_running_sum(seed):
+    rng = np.random.default_rng(seed)
+    bumps = zip(
+        rng.uniform(-60.0, -2.0, 3),
+        rng.uniform(-1.5, 3.0, 3),
+        rng.uniform(0.3, 6.0, 3),
+        strict=True,
+    )
+    prestress = sp.Prestress(-rng.uniform(0.1, 0.9), 0.0, rng.uniform(0.5, 5.0), bumps=tuple(bumps))
+    x = np.linspace(-400.0, 400.0, 400_001)
+    integral_from = np.cumsum(prestress(x)[::-1])[::-1] * (x[1] - x[0])
+    if integral_from[x > 0.0][0] < 0.0:
+        with pytest.raises(ArithmeticError, match="no balance"):
+            sp.theory.prestress_balance_position(prestress)
+    else:
+        expected = x[(x < 0.0) & (integral_from < 0.0)].max()
+        assert sp.theory.prestress_balance_position(prestress) == pytest.approx(expected, abs=5e-3)

@@ -83,8 +83,8 @@ def rewrite(path: Path, **change) -> None:
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
 
 
-CHANGED = {DATA: "not what its job wrote"}
-OLDER = {TABLE: f"made from another {DATA}"}
+CHANGED = {DATA: "changed since its job wrote it"}
+OLDER = {TABLE: f"made from an earlier version of {DATA}"}
 UNREADABLE = {PAGE: "its record cannot be read"}
 RECORD, PAGE_RECORD = "results/data/.records/a.nc.json", "results/.records/index.html.json"
 TABLE_RECORD = "results/measurements/.records/a.csv.json"

@@ -13,9 +13,9 @@ from slippulse_paper.configuration.profiles import ExpandedProfiles
 from slippulse_paper.configuration.read import read_config, read_overlay
 from slippulse_paper.configuration.resolve import (
     all_simulations,
-    corners,
     resolve,
     scene_simulation,
+    with_ends_of_lists,
 )
 from slippulse_paper.configuration.runs import profile_labels, run_count
 
@@ -189,7 +189,10 @@ def test_lists_of_a_rough_profile_give_all_combinations_with_the_seeds_fastest(s
     labels = profile_labels(sweep)
     assert [label["profile"] for label in labels] == [*np.repeat([1, 2, 3, 4], 6)]
     # The checks before a run take the first and the last seed of each ensemble.
-    seeds = [profile["rough"]["seed"] for profile in ExpandedProfiles(corners(sweep)["profiles"])]
+    seeds = [
+        profile["rough"]["seed"]
+        for profile in ExpandedProfiles(with_ends_of_lists(sweep)["profiles"])
+    ]
     assert seeds == [3, 5] * 4
 
 

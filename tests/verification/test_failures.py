@@ -46,9 +46,9 @@ def test_a_value_that_is_not_finite_is_noticed(scheme, place, value, row):
     lattice = LATTICES[scheme](scene, None, scene.beta)
     lattice.advance_to_end(None)
     object.__setattr__(scene, "duration", 8.0)
-    moving = np.flatnonzero(lattice.motion.w[1] > 0.0)
+    moving = np.flatnonzero(lattice.motion.derivatives[1] > 0.0)
     block = moving[int(place * moving.size)]
-    lattice.motion.w[row, block] = value
+    lattice.motion.derivatives[row, block] = value
     if row == 0 and scheme == "localised":
         lattice.motion.strain[block] = value
     with pytest.raises(sp.UnstableRun, match="not finite"):

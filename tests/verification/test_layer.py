@@ -119,6 +119,21 @@ def test_a_pulse_has_the_same_numbers_on_three_grids(cells):
     assert numbers == pytest.approx((0.970, 1.62, 1.820), rel=0.01)
 
 
+@pytest.mark.parametrize("beta", [0.0, 1e-3])
+def test_single_precision_errs_by_less_than_a_thousandth_of_the_grid(beta):
+    scene = replace(PULSE, duration=17.0, cells=40, beta=beta)
+    single, double = simulate_layer(replace(scene, precision="single")), simulate_layer(scene)
+    coarse = simulate_layer(replace(scene, cells=20))
+    assert single.velocity.dtype == np.float32
+    assert beta or 1e-10 < single.energy_residual < 1e-6
+    for name in ("release_time", "stick_time", "slip"):
+        values = getattr(double, name)
+        error = np.abs(getattr(single, name) - values)
+        np.testing.assert_array_equal(np.isnan(error), np.isnan(values))
+        change = np.abs(np.interp(double.x, coarse.x, getattr(coarse, name)) - values)
+        assert np.nanmax(error) < 1e-3 * np.nanmax(change)
+
+
 def test_columns_that_are_no_longer_advanced_change_no_event_before_their_wave_arrives():
     scene = replace(PULSE, duration=17.0)
     full, short = simulate_layer(scene), simulate_layer(replace(scene, trail=2.5))

@@ -85,7 +85,7 @@ def test_rows_begin_at_different_places_of_their_pages(right):
     scene = sp.Scene("displacement", sp.Prestress(0.5, right), 320.0, 0.1, gamma=0.5, order=8)
     lattice = Lattice(scene, None, 0.0)
     lattice.advance_to_end(None)
-    rows = (*lattice.motion.w, *lattice.motion[1:])
+    rows = (*lattice.motion.derivatives, *lattice.motion[1:])
     positions = np.sort([row.ctypes.data % 4096 for row in rows])
     assert np.diff(positions, append=positions[0] + 4096).min() >= 3 * 64
     assert lattice.size > 4 * INITIAL_BLOCKS

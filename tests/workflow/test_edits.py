@@ -126,7 +126,9 @@ def test_a_result_edited_by_hand_fails_the_job_that_reads_it(job):
     )
     run_job(second)
     write_text("point\n5\n", "results/b.csv")
-    with pytest.raises(JobFailed, match=r"\Aresults/b.csv: not what its job wrote; delete it"):
+    with pytest.raises(
+        JobFailed, match=r"\Aresults/b.csv: changed since its job wrote it; delete it"
+    ):
         run_job(second)
 
 
@@ -151,7 +153,7 @@ def test_a_result_edited_by_hand_is_named_by_a_look_and_renewed_by_make(small):
     assert sum(line in text for text in result.stderr.splitlines()) == 1
     assert "make replicate" in result.stderr
     output = replicate(small)
-    reason = "results/data/one.nc: not what its job wrote"
+    reason = "results/data/one.nc: changed since its job wrote it"
     assert f"1 result is made again: {reason}" in output
     assert {*re.findall(r"^  (.+): [0-9.]+ s$", output, re.M)} == {
         "simulate one",

@@ -58,7 +58,7 @@ def folder(small) -> Path:
 # A shell function that edits a file and restores its time, as `rsync -a` and `cp -p` would do.
 SHELL = 'edit() { touch -r "$1" was; echo "# edited" >> "$1"; touch -r was "$1"; }; '
 # Reasons that `make verify` prints. "missing" and "params changed" are reasons of Snakemake.
-CHANGED, MISSING, SOURCES = "not what its job wrote", "missing", "params changed"
+CHANGED, MISSING, SOURCES = "changed since its job wrote it", "missing", "params changed"
 RECORD, UNKNOWN = "its record cannot be read", "no job has recorded it"
 # Files of each kind that are removed, or edited without a change of their size.
 REMOVED = f"{FIGURE}.csv findings.json explorer.html manuscript/replication.pdf codecheck.yml"

@@ -20,7 +20,7 @@ from slippulse_paper.configuration.altered import Alterations
 from slippulse_paper.configuration.drawn import drawing_problems
 from slippulse_paper.configuration.limits import bound_of_sweep, cost_problems
 from slippulse_paper.configuration.problems import ConfigError
-from slippulse_paper.configuration.promised_spacings import promised
+from slippulse_paper.configuration.promised_spacings import with_promised_spacings
 from slippulse_paper.configuration.read import read_config, read_overlay
 from slippulse_paper.configuration.renamed_keys import rename_warnings
 from slippulse_paper.configuration.resolve import accuracy_of, all_simulations, resolve
@@ -221,26 +221,26 @@ def run_step(step, wildcards, input, output, params, threads, log):
 
 
 def note_of(needs, *keys):
-    """Return a line that names altered parameters of the inputs of a figure, or no text.
+    """Return a line that names altered parameters of the inputs of a figure.
 
-    ``needs`` is its constant NEEDS. ``keys`` are further keys of the configuration that the figure
-    reads.
+    The text is empty if no parameter is altered. ``needs`` is the constant NEEDS of the figure.
+    ``keys`` are further keys of the configuration that the figure reads.
     """
     if ALTERED is None:
         return ""
+    simulations, settings = set(), [*keys]
     # A figure also depends on everything that its studies read.
     needs_of_studies = [STUDY_NEEDS[study] for study in needs.get("studies", ())]
-    simulations, settings = set(), [*keys]
-    for needs_of_one in [needs, *needs_of_studies]:
-        settings += needs_of_one.get("settings", ())
+    for figure_or_study_needs in [needs, *needs_of_studies]:
+        settings += figure_or_study_needs.get("settings", ())
         for kind in ("data", "measured", "uncertainties", "sweeps"):
-            simulations.update(needs_of_one.get(kind, ()))
+            simulations.update(figure_or_study_needs.get(kind, ()))
     return ALTERED.note(sorted(simulations), settings)
 
 
 @cache
 def sweep_of(name):
-    """Return the resolved simulation with a name."""
+    """Return a simulation by its name, with all values that its results depend on (resolved)."""
     return resolve(SIMULATIONS[name], CONFIG.model, ACCURACY)
 
 
@@ -248,6 +248,12 @@ def sweep_of(name):
 def bound_of(name):
     """Return the upper bound on the cost of one chunk of a simulation, or of all its runs."""
     return bound_of_sweep(sweep_of(name), SIMULATIONS[name].chunks)
+
+
+def bound_of_job(wildcards):
+    """Return the upper bound on the cost of a job on a simulation or on one chunk of it."""
+    name, _, _ = wildcards.simulation.partition("/")
+    return bound_of(name)
 
 
 # The results are cached, because Snakemake evaluates the params of all waiting jobs whenever a job
@@ -266,15 +272,16 @@ def settings_of(job):
     fraction = config["measure"]["fraction"] if sweep["boundary"] == "stress" else None
     factors = map(float, ACCURACY["coarser"])
     return {
-        # If an accuracy is required, `promised` adds the spacing of each run.
-        "sweep": promised(sweep),
-        "sweeps": {factor: promised(sweep | {"coarser": factor}) for factor in factors},
+        # If an accuracy is required, `with_promised_spacings` adds the spacing of each run.
+        "sweep": with_promised_spacings(sweep),
+        "sweeps": {
+            factor: with_promised_spacings(sweep | {"coarser": factor}) for factor in factors
+        },
         "measure": {**config["measure"], "fraction": fraction},
         "topics": topics_of(name),
         "solver": declared("steps.simulate", "SOLVERS")[scheme],
-        "kernels": made("kernels", {scheme} & {*KERNELS}),
-        # This is a function, since most rules do not need the bound, which takes time.
-        "bound": lambda: bound_of(name),
+        # The exact solutions (scheme continuum) use no kernels.
+        "kernels": made("kernels", [scheme] if scheme in KERNELS else []),
     }
 
 
@@ -351,8 +358,8 @@ def report_changed_results():
     reason = problems[names[0]]
     example = reason if len(names) == 1 else f"{names[0]}: {reason}"
     shown = f"{', '.join(names[:MAX_SHOWN_RESULTS])}{more} ({example})"
-    remedy = "make replicate, or snakemake --forcerun and their names"
-    print(f"{results_are} changed: {shown}. To make them again: {remedy}", file=sys.stderr)
+    remedy = "To undo this, run make replicate, or snakemake --forcerun with these names"
+    print(f"{results_are} changed: {shown}. {remedy}", file=sys.stderr)
 
 
 if workflow.is_main_process and not IS_MODULE:
@@ -383,6 +390,7 @@ for kind in ("data", "measured", "predicted", "uncertainties", "coarser"):
         JOINED[path] = (kind, name)
 for name in STUDY_CHUNKS:
     JOINED[f"studies/{name}.csv"] = ("studies", name)
+# The NEEDS of all figures.
 ALL_FIGURES = NEEDS | SWEEPS
 
 
@@ -445,8 +453,8 @@ def study_settings(wildcards):
     """
     study, _, chunk = wildcards.study.partition("/")
     needs = STUDY_NEEDS[study]
-    swept = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
-    values = selected(config, needs.get("settings", ()), {"sweeps": swept})
+    sweeps = {name: settings_of(name)["sweep"] for name in needs.get("sweeps", ())}
+    values = selected(config, needs.get("settings", ()), {"sweeps": sweeps})
     if chunk:
         values["chunk"] = chunk_numbers(chunk)
     return {"study": study, "values": values}

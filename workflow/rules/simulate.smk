@@ -2,8 +2,8 @@
 
 # Limits of time and memory on a cluster. After a failure, the next attempt has larger limits.
 BOUNDS = {
-    "runtime": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().minutes,
-    "mem_mb": lambda wildcards, attempt: attempt * setting("bound")(wildcards)().megabytes,
+    "runtime": lambda wildcards, attempt: attempt * bound_of_job(wildcards).minutes,
+    "mem_mb": lambda wildcards, attempt: attempt * bound_of_job(wildcards).megabytes,
 }
 
 
@@ -31,7 +31,7 @@ rule simulate:
         "results/logs/simulate/{simulation}.log",
     # The report waits for the claims, and so the inputs of the claims are made first.
     priority: 2
-    threads: lambda wildcards: setting("bound")(wildcards)().threads
+    threads: lambda wildcards: bound_of_job(wildcards).threads
     resources:
         **BOUNDS,
     params:

@@ -60,9 +60,9 @@ def limit_time(run: AnyRun) -> float:
 def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") -> float:
     """Return the time until which a front (or trailing edge) is known; infinite if always.
 
-    A front that is faster than the waves stays known after `limit_time`, because no wave from the
-    unknown part of the rupture catches up with it. The front is known until the end, unless the
-    block ahead of its last release is in the unknown part at the end.
+    An exact solution may not know all of the rupture after its limit time. The unknown part begins
+    at the limit position, and spreads at the wave speed. It may not catch up with the front, which
+    is then known until the end. Otherwise the front is known until the last known release.
     """
     limit = limit_time(run)
     if np.isinf(limit) or edge == "stick_time":
@@ -70,13 +70,14 @@ def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") ->
     times, distances = front_path(run, side)
     if not times.size:
         return limit
+    # The front is known until the end if the next block, which it has not reached, is known.
     next_distance = distances[-1] + run.attrs["dx"]
     next_position = next_distance if side == "right" else -next_distance
     if "slip" in run:
         next_block = int(np.argmin(np.abs(np.asarray(run["x"]) - next_position)))
         is_unknown = np.isnan(run["slip"][next_block])
     else:
-        # The unknown part begins at the limit position, and spreads at the wave speed 1.
+        # The wave speed is 1.
         wave_arrival = limit + abs(next_position - run.attrs["limit_position"])
         is_unknown = wave_arrival <= run.attrs["end_time"]
     return float(np.max(times)) if is_unknown else np.inf
@@ -113,7 +114,9 @@ def arrival(run: AnyRun, distance: float, side: str = "right") -> tuple[float, f
         return np.nan, np.nan
     # The front has reached a block when this block and all blocks before it have been released.
     arrivals = np.maximum.accumulate(times)
-    waits = np.diff(arrivals[: np.searchsorted(distances, distance) + 1])
+    # The blocks on the way end with the first block at or beyond the distance.
+    last_block = int(np.searchsorted(distances, distance))
+    waits = np.diff(arrivals[: last_block + 1])
     return float(np.interp(distance, distances, arrivals)), float(np.max(waits, initial=0.0))
 
 
@@ -131,10 +134,12 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     if is_in_window.sum() < MIN_FITTED_BLOCKS or np.isfinite(known_until(run, side)):
         return NO_LINE
     times, distances = times[is_in_window], distances[is_in_window]
+    # A wait is a pause if it is long compared with the total and with the mean of all waits.
     waits = np.diff(np.maximum.accumulate(times))
     shortest_pause = max(PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS / times.size) * np.sum(waits)
-    # The number of the first block after the last pause; 0 if there is no pause.
-    after_pause = int(np.max(np.flatnonzero(waits > shortest_pause) + 1, initial=0))
+    pauses = np.flatnonzero(waits > shortest_pause)
+    # A wait ends with the release of the next block.
+    after_pause = int(pauses[-1]) + 1 if pauses.size else 0
     if 0 < after_pause <= times.size - MIN_FITTED_BLOCKS:
         line = fit_line(times[after_pause:], distances[after_pause:])
         if line.slope > 1.0:
@@ -143,7 +148,7 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
 
 
 def fit_line(x: np.ndarray, y: np.ndarray) -> Line:
-    """Fit a straight line y(x) by least squares; NaN if all x are equal."""
+    """Fit a straight line y(x) by least squares; the line is NaN if all x are equal."""
     mean_x, mean_y = x.sum() / x.size, y.sum() / y.size
     centred = x - mean_x
     scatter = float((centred**2).sum())
@@ -153,4 +158,4 @@ def fit_line(x: np.ndarray, y: np.ndarray) -> Line:
     intercept = float(mean_y - slope * mean_x)
     residuals = y - intercept - slope * x
     variance = (residuals**2).sum() / max(x.size - 2, 1)
-    return Line(slope, intercept, float(np.sqrt(variance / scatter)))
+    return Line(slope, intercept, slope_error=float(np.sqrt(variance / scatter)))

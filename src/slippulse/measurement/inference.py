@@ -6,7 +6,6 @@ readings. `interpolate_fits` interpolates these fits between the damping ratios.
 finds the damping ratio that fits best, and its confidence regions (profile likelihood).
 """
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,15 +28,17 @@ def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
 
     The result has one row for each of INTERPOLATED_RATIOS damping ratios. Its columns are
     damping_ratio, dx, tau0, gamma, tau0_error, gamma_error, chi2, and one column for each reading
-    with its pull, (predicted - drawn)/reading_error.
+    with its pull, which is (predicted - drawn)/reading_error.
     """
+    # Every column of this table is interpolated.
     studied = _one_row_per_ratio(profile)
     studied_log_ratios = np.log(studied.index.to_numpy())
     log_ratios = np.linspace(studied_log_ratios[0], studied_log_ratios[-1], INTERPOLATED_RATIOS)
     values = CubicSpline(studied_log_ratios, studied.to_numpy())(log_ratios)
     fits = pd.DataFrame(values, columns=studied.columns)
-    # Several readings share a part of their errors, so chi-square is the sum of the squares of the
-    # independent pulls. Readings without a weight were not fitted.
+    # Several readings share a part of their errors, and so their pulls are correlated. Chi-square
+    # is the sum of the squares of independent combinations of the pulls, which the table also has.
+    # Readings of weight 0 were not fitted.
     fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].unique()
     fitted_pulls = fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted_readings]]
     chi_square = (fitted_pulls**2).sum(axis=1)
@@ -53,9 +54,11 @@ def _one_row_per_ratio(profile: pd.DataFrame) -> pd.DataFrame:
     with INDEPENDENT_PREFIX. Independent pulls are combinations of pulls that are not correlated
     with each other (see `independent_combinations`).
     """
-    by_reading = partial(profile.pivot, index="damping_ratio", columns="reading")
-    pulls = by_reading(values="pull")
-    independent = by_reading(values="independent_pull").add_prefix(INDEPENDENT_PREFIX)
+    pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
+    independent = profile.pivot(
+        index="damping_ratio", columns="reading", values="independent_pull"
+    ).add_prefix(INDEPENDENT_PREFIX)
+    # These columns have the same values in all rows of a damping ratio.
     columns = ["dx", "tau0", "gamma", "tau0_error", "gamma_error"]
     numbers = profile.groupby("damping_ratio")[columns].first()
     return pd.concat([pulls, independent, numbers], axis=1)
@@ -104,36 +107,40 @@ def infer_parameters(table: pd.DataFrame, part: str = "profile") -> dict[str, An
 
 
 def _fit_of_rule(rows: pd.DataFrame) -> dict[str, Any]:
-    """Return the fit at the best damping ratio, from the rows of one release rule.
+    """Return the best fit of one release rule: the one at the damping ratio with the least chi2.
 
-    It has chi2, dof (degrees of freedom), damping_ratio, dx, tau0, gamma, the pulls by reading, and
-    the `confidence_regions`.
+    Its keys are chi2, dof (degrees of freedom), damping_ratio, dx, tau0, gamma, "regions" (the
+    confidence regions of the damping ratio), and "pulls" (for each reading, its deviation from the
+    fit divided by its error).
+
+    rows : table of the fits, with one row for each studied damping ratio and reading
     """
-    by_ratio = interpolate_fits(rows)
-    best = by_ratio.loc[by_ratio["chi2"].idxmin()]
+    fits = interpolate_fits(rows)
+    best = fits.loc[fits["chi2"].idxmin()]
     names = ("chi2", "damping_ratio", "dx", "tau0", "gamma")
     fit: dict[str, Any] = {name: float(best[name]) for name in names}
     # Three parameters are fitted: tau_0, gamma and the damping ratio.
     fit["dof"] = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
-    fit["regions"] = confidence_regions(by_ratio)
+    fit["regions"] = confidence_regions(fits)
     fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}
     return fit
 
 
 def confidence_regions(fits: pd.DataFrame) -> dict[float, tuple[float, float]]:
-    """Return the lower and upper end of the damping ratio for each of CONFIDENCE_LEVELS.
+    """Return the lowest and the highest damping ratio in the region of each confidence level.
 
-    An end is NaN if it lies outside the studied damping ratios.
+    Either is NaN if it lies outside the studied damping ratios. The levels are CONFIDENCE_LEVELS.
 
-    fits : fits by damping ratio, in ascending order
+    fits : table with the columns damping_ratio, in ascending order, and chi2
     """
-    rise = fits["chi2"] - fits["chi2"].min()
+    ratios = fits["damping_ratio"].to_numpy()
+    rises = (fits["chi2"] - fits["chi2"].min()).to_numpy()
     regions = {}
     for confidence in CONFIDENCE_LEVELS:
-        is_inside = rise <= chi_square_rise(confidence)
-        ends = fits.loc[is_inside, "damping_ratio"].iloc[[0, -1]]
+        inside = np.flatnonzero(rises <= chi_square_rise(confidence))
+        first, last = inside[0], inside[-1]
         # If the region extends to the first or last studied ratio, its end there is unknown.
-        is_outermost = ends.index.isin([fits.index[0], fits.index[-1]])
-        low, high = ends.where(~is_outermost)
-        regions[confidence] = float(low), float(high)
+        low = float(ratios[first]) if first > 0 else np.nan
+        high = float(ratios[last]) if last < ratios.size - 1 else np.nan
+        regions[confidence] = low, high
     return regions

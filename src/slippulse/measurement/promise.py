@@ -49,6 +49,7 @@ def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     """
     if run["run_flags"]:
         return set()
+    # Some numbers are covered only if the front is fast on one side, or on both sides.
     fast = fast_sides(run)
     required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
     names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}
@@ -61,19 +62,23 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
 
     As the spacing falls, they do not tend to a limit, or their errors fall too slowly.
 
-    run, fraction : see `covered_numbers`
+    run : the row of a run in the measured table
+    fraction : the transition is measured when the left front has covered this fraction of its path
     """
     names: set[str] = set()
     if run.get("pulse_state") != "steady":
         names.update(PULSE_NUMBERS)
     # The largest velocity grows without limit between two fronts that continue to run. It tends to
-    # a limit only if the left front is arrested and the pulse runs into pre-stress 0.
+    # a limit only if the left front is arrested and the pulse runs into pre-stress 0. The column
+    # "beyond" has the level beyond the last step of the pre-stress.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
         names.add("largest_velocity")
-    if run["boundary"] == "stress":
-        is_resolved = run.get("transition_state") == "resolved" and fraction <= MAX_COVERED_FRACTION
-        if not is_resolved or run["damping_ratio"] < MIN_DAMPING_RATIO:
-            names.update(TRANSITION_NUMBERS)
+    if run["boundary"] == "stress" and (
+        run.get("transition_state") != "resolved"
+        or fraction > MAX_COVERED_FRACTION
+        or run["damping_ratio"] < MIN_DAMPING_RATIO
+    ):
+        names.update(TRANSITION_NUMBERS)
     return names
 
 
@@ -114,11 +119,13 @@ def judge_promises(
     The new column ``promised`` has the promise, and ``kept`` is "true" or "false". If the promise
     does not cover a number, ``promised`` is NaN and ``kept`` is an empty text.
     """
+    # A run without flags has an empty cell, which is read as NaN.
     flags = measured["run_flags"].astype(object).fillna("")
-    rows = measured.assign(run_flags=flags).to_dict("records")
-    covered = [covered_numbers(row, fraction) for row in rows]
-    pairs = zip(study["point"], study["quantity"], strict=True)
-    is_promised = [math.isfinite(promise) and name in covered[point] for point, name in pairs]
+    runs = measured.assign(run_flags=flags).to_dict("records")
+    covered = [covered_numbers(run, fraction) for run in runs]
+    is_promised = []
+    for run_number, quantity in zip(study["point"], study["quantity"], strict=True):
+        is_promised.append(math.isfinite(promise) and quantity in covered[run_number])
     # The uncertainty is NaN if a coarser lattice does not have the number. This counts as a miss.
     is_within = study["uncertainty"] <= promise * study["value"].abs()
     kept = np.where(is_promised, np.where(is_within, "true", "false"), "")

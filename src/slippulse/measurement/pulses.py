@@ -25,10 +25,10 @@ class LeadingPulse(NamedTuple):
 
     front: float  # distance from x = 0; it can lie between two blocks
     speed: float  # front speed
-    width: float  # distance from the front to the trailing edge; NaN if no block has stuck
-    peak_velocity: float  # largest slip velocity, from a parabola through three blocks
-    peak_distance: float  # distance of the peak from x = 0
-    slip: float  # mean final slip over half a pulse width behind the trailing edge; NaN without one
+    width: float = np.nan  # from the front to the trailing edge; NaN if no block has stuck
+    peak_velocity: float = np.nan  # largest slip velocity, from a parabola through three blocks
+    peak_distance: float = np.nan  # distance of the peak from x = 0
+    slip: float = np.nan  # mean final slip over half a width behind the trailing edge, if any
     pulses: int = 1  # number of pulses on the right; 0 if the front has stopped
 
 
@@ -38,41 +38,36 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     window : the last fraction of the front's path, from which its speed is measured
     """
     speed = fit_front(run, window).slope
+    # The blocks on the right.
     start = np.searchsorted(run["x"], 0.0)
-    distance = np.asarray(run["x"])[start:]
-    velocity, slip = (np.asarray(run[name])[start:] for name in ("slip_velocity", "slip"))
-    front, stopped = front_at_end(run, distance, velocity, speed)
+    distance, velocity = np.asarray(run["x"])[start:], np.asarray(run["slip_velocity"])[start:]
+    slip = np.asarray(run["slip"])[start:]
+    front, has_stopped = front_at_end(run, distance, velocity, speed)
+    # An exact solution may not know all slip velocities.
     if np.isnan(velocity).any():
-        return LeadingPulse(
-            front=front,
-            speed=speed,
-            width=np.nan,
-            peak_velocity=np.nan,
-            peak_distance=np.nan,
-            slip=np.nan,
-        )
-    pulses = [] if stopped else sliding_stretches(velocity)
+        return LeadingPulse(front, speed)
+    # The slices of the blocks in each pulse.
+    pulses = [] if has_stopped else sliding_stretches(velocity)
     # Slip velocity of the leading pulse alone, 0 everywhere if there is no pulse.
     leading_velocity = np.zeros(distance.size)
     if pulses:
-        leading = pulses[-1]
-        leading_velocity[leading] = velocity[leading]
-    peak, peak_distance = parabola_peak(distance, leading_velocity)
+        leading_velocity[pulses[-1]] = velocity[pulses[-1]]
+    peak_velocity, peak_distance = parabola_peak(distance, leading_velocity)
     trailing_edge = _trailing_edge(run, peak_distance, speed) if pulses else np.nan
     width = front - trailing_edge
-    # The slip is measured at stuck blocks behind the trailing edge. Those in the inner half of its
-    # path are left out, because the nucleation has influenced them.
+    # The slip is measured at stuck blocks that are close behind the trailing edge. Those in the
+    # inner half of its path are left out, because the nucleation has influenced them.
     dx = run.attrs["dx"]
     is_in_outer_half = (distance > 0.5 * trailing_edge) & (distance < trailing_edge - 2.0 * dx)
     has_stuck = is_in_outer_half & (velocity <= 0.0)
-    slip_length = max(0.5 * width, 4.0 * dx)
+    averaging_length = max(0.5 * width, 4.0 * dx)
     return LeadingPulse(
         front=front,
         speed=speed,
         width=width,
-        peak_velocity=peak,
+        peak_velocity=peak_velocity,
         peak_distance=peak_distance,
-        slip=_mean_near_end(distance[has_stuck], slip[has_stuck], slip_length),
+        slip=_mean_near_end(distance[has_stuck], slip[has_stuck], averaging_length),
         pulses=len(pulses),
     )
 
@@ -114,15 +109,15 @@ def front_at_end(
     if not released_distances.size or np.isfinite(known_until(run)):
         return np.nan, False
     last_distance, dx = float(released_distances[-1]), run.attrs["dx"]
-    # The front moves on at its speed after the last release.
-    moved_on = float(speed * (run.attrs["end_time"] - release_times[-1]))
-    # It has stopped if it should have released the next block by now, and if the last released
-    # block is at rest.
-    at_rest = not velocity[np.searchsorted(distance, last_distance)] > 0.0
-    if at_rest and not 0.0 <= moved_on <= dx:
+    # The distance that the front has moved since the last release, if it has kept its speed.
+    moved = float(speed * (run.attrs["end_time"] - release_times[-1]))
+    # The front has stopped if the last released block is at rest, and if the front would otherwise
+    # have released the next block by now. If the speed is NaN, it counts as stopped, too.
+    is_at_rest = not velocity[np.searchsorted(distance, last_distance)] > 0.0
+    if is_at_rest and not 0.0 <= moved <= dx:
         return last_distance, True
     # Since the next block has not been released, the front has not reached it.
-    return last_distance + min(max(moved_on, 0.0), dx), False
+    return last_distance + min(max(moved, 0.0), dx), False
 
 
 def sliding_stretches(velocity: np.ndarray) -> list[slice]:
@@ -133,9 +128,10 @@ def sliding_stretches(velocity: np.ndarray) -> list[slice]:
     The last stretch of sliding blocks is the leading pulse. Stretches that are much slower than it
     are left out.
     """
-    # Blocks at which a stretch begins, and blocks behind the end of a stretch, alternate.
-    edges = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
-    stretches = list(map(slice, edges[0::2], edges[1::2]))
+    # The blocks at which sliding begins or ends, in turns: the first block of a stretch, and the
+    # first block after it.
+    changes = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
+    stretches = list(map(slice, changes[0::2], changes[1::2]))
     if not stretches:
         return []
     least_peak = MIN_RELATIVE_PEAK * np.max(velocity[stretches[-1]])

@@ -47,15 +47,18 @@ def classify_regime(
     x, final_velocity = _final_velocity(run)
     largest = float(np.max(final_velocity))
     centre = float(final_velocity[int(np.argmin(np.abs(x)))])
-    left_speed, right_speed = (_late_speed(run, side) for side in ("left", "right"))
+    # The number of sides on which the rupture runs: those with a fast front or, if there is none,
+    # those with a sliding block.
+    left_speed, right_speed = _late_speed(run, "left"), _late_speed(run, "right")
     lowest_fast_speed = 1.0 - steady_tolerance
-    fast_sides = int(left_speed >= lowest_fast_speed) + int(right_speed >= lowest_fast_speed)
-    is_sliding = final_velocity >= still_fraction * largest
-    sliding_sides = int(np.any(is_sliding[x < 0.0])) + int(np.any(is_sliding[x > 0.0]))
-    running_sides = fast_sides if fast_sides > 0 else sliding_sides
+    running_sides = int(left_speed >= lowest_fast_speed) + int(right_speed >= lowest_fast_speed)
+    if running_sides == 0:
+        is_sliding = final_velocity >= still_fraction * largest
+        running_sides = int(np.any(is_sliding[x < 0.0])) + int(np.any(is_sliding[x > 0.0]))
     ways = "two-way" if running_sides == 2 else "one-way"
-    # On a crack that runs on one side, the slower front still moves if its speed is not nearly 0.
+    # If the rupture runs on one side, the slower front still moves if its speed is not nearly 0.
     has_slow_front = running_sides == 1 and min(left_speed, right_speed) > steady_tolerance
+    # An exact solution may not know all velocities. Then they are NaN, and the regime is undecided.
     final_samples = np.asarray(run["sample_velocity"])[-1]
     if np.isnan(np.append(final_velocity, final_samples)).any():
         regime = UNDECIDED
@@ -104,6 +107,7 @@ def _is_arrested(run: AnyRun, largest: float, still_fraction: float) -> bool:
 
     largest : the largest velocity at the end
     """
+    # The release time is NaN for blocks that were never released.
     last_release = float(np.nan_to_num(np.asarray(run["release_time"])).max())
     largest_ever = max(largest, float(np.max(np.asarray(run["sample_velocity"]))))
     at_rest = largest <= still_fraction * largest_ever

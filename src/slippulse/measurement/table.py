@@ -7,7 +7,7 @@ the waves of the lattice.
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from contextlib import suppress
 
 import numpy as np
@@ -44,6 +44,11 @@ GAUSSIAN_END_IN_WIDTHS = 6.0
 MIN_FAR_SAMPLES = 8
 
 
+def run_columns(columns: Container[str]) -> list[str]:
+    """Return those columns of a measured table that identify a run or describe its computation."""
+    return [*PARAMETERS, *(label for label in LABELS if label in columns)]
+
+
 def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
     """Return all numbers of a run by name, and its leading pulse.
 
@@ -52,15 +57,12 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     A number is left out if the data that it needs were not recorded. The pulse is None if slip
     velocity was not recorded.
     """
+    # The parameters of the run. Older files lack extra terms, or have the friction in another form.
     attributes = DEFAULTS_OF_EXTRA_TERMS | run.attrs
     attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
-    # The level into which the right front runs: that beyond the last step, if there are steps.
-    row["beyond"] = row["right"]
-    steps = prestress_from(run.attrs).steps
-    if steps:
-        _, row["beyond"] = steps[-1]
-    row |= columns_of_table(run, settings["front_window"])
+    row |= profile_columns(run, settings["front_window"])
+    # Fronts, transition and trailing edge.
     for side in ("right", "left"):
         line = fit_front(run, settings["front_window"], side)
         row[f"front_speed_{side}"] = line.slope
@@ -72,6 +74,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     trailing_edges = front_position(run, times, "right", "stick_time").tolist()
     for time, trailing_edge in zip(times, trailing_edges, strict=True):
         row[f"trailing_edge_{time:g}"] = trailing_edge
+    # The pulse, which needs the fields at the end of the run.
     pulse = None
     if "slip_velocity" in run:
         pulse = leading_pulse(run, settings["front_window"])
@@ -85,6 +88,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
             "lattice_noise": lattice_noise(run),
             "sliding_at_once": sliding_at_once(run),
         }
+    # The regime, which needs samples.
     if "sample_velocity" in run and run["sample_position"].size > 1:
         row |= classify_regime(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
@@ -92,36 +96,57 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     return row, pulse
 
 
-def columns_of_table(run: AnyRun, window: float) -> dict[str, float | str]:
-    """Return the labels of the profile and, if the pre-stress is a table, further columns.
+def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
+    """Return the columns of a run that describe its pre-stress, in addition to PARAMETERS.
 
-    lowest_prestress_SIDE is the lowest pre-stress that a front has crossed; NaN if it has crossed
-    none. level_ahead_SIDE is the level that it crossed last; NaN if the pre-stress is not constant
-    over the window. steps_and_bumps has a digest in place of the points of a long table.
+    beyond : level into which the right front runs: that of the last step, if there are steps
+    profile, seed : labels of the profile, if the run has them
+    steps_and_bumps : see `shortened_table`; this column and the next ones only for a table
+    lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`
+    """
+    profile = prestress_from(run.attrs)
+    row = {"beyond": run.attrs["right"]}
+    if profile.steps:
+        _, row["beyond"] = profile.steps[-1]
+    row |= {name: run.attrs[name] for name in LABELS if name in run.attrs}
+    if profile.points:
+        row["steps_and_bumps"] = shortened_table(run.attrs["steps_and_bumps"])
+        row |= crossed_prestress(run, window)
+    return row
+
+
+def shortened_table(profile_as_json: str) -> str:
+    """Return a recorded profile (JSON text), with a digest in place of the points of a long table.
+
+    A table is long if it has more than MAX_POINTS_IN_ROW points.
+    """
+    parts = json.loads(profile_as_json)
+    point_count = len(parts["points"])
+    if point_count <= MAX_POINTS_IN_ROW:
+        return profile_as_json
+    digest = hashlib.sha256(profile_as_json.encode()).hexdigest()[:16]
+    return json.dumps(parts | {"points": f"{point_count} points, {digest}"})
+
+
+def crossed_prestress(run: AnyRun, window: float) -> dict[str, float]:
+    """Return the lowest pre-stress that each front has crossed, and the level that it crossed last.
+
+    They have the names lowest_prestress_SIDE, which is NaN if the front has crossed no block, and
+    level_ahead_SIDE, which is NaN if the pre-stress is not constant over the window.
 
     window : the last part of a front's path, as a fraction of the path
     """
-    profile = prestress_from(run.attrs)
-    row: dict[str, float | str] = {name: run.attrs[name] for name in LABELS if name in run.attrs}
-    if not profile.points:
-        return row
-    if len(profile.points) > MAX_POINTS_IN_ROW:
-        recorded_profile = run.attrs["steps_and_bumps"]
-        profile_parts = json.loads(recorded_profile)
-        digest = hashlib.sha256(recorded_profile.encode()).hexdigest()[:16]
-        profile_parts["points"] = f"{len(profile.points)} points, {digest}"
-        row["steps_and_bumps"] = json.dumps(profile_parts)
+    numbers = {}
     x, was_released = np.asarray(run["x"]), np.isfinite(np.asarray(run["release_time"]))
-    for side, sign in (("left", -1.0), ("right", 1.0)):
-        was_crossed = was_released & (sign * x >= 0.0)
-        tau = np.asarray(run["prestress"])[was_crossed]
-        row[f"lowest_prestress_{side}"] = float(np.min(tau)) if tau.size else np.nan
-        distance = np.abs(x[was_crossed])
+    for side, is_on_side in (("left", x <= 0.0), ("right", x >= 0.0)):
+        was_crossed = was_released & is_on_side
+        tau, distance = np.asarray(run["prestress"])[was_crossed], np.abs(x[was_crossed])
+        numbers[f"lowest_prestress_{side}"] = float(np.min(tau)) if tau.size else np.nan
         is_in_window = distance >= (1.0 - window) * np.max(distance, initial=0.0)
         crossed_last = tau[is_in_window]
         is_constant = crossed_last.size > 0 and np.ptp(crossed_last) == 0.0
-        row[f"level_ahead_{side}"] = float(crossed_last[0]) if is_constant else np.nan
-    return row
+        numbers[f"level_ahead_{side}"] = float(crossed_last[0]) if is_constant else np.nan
+    return numbers
 
 
 def measure_transition(run: AnyRun, fraction: float) -> dict:
@@ -157,6 +182,7 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
         return np.nan
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
+    # The block that is nearest to the peak.
     peak = int(np.argmin(np.abs(xi - (pulse.peak_distance - pulse.front))))
     half_velocity = 0.5 * float(velocity[peak])
     is_below = velocity < half_velocity
@@ -201,7 +227,8 @@ def sliding_at_once(run: AnyRun) -> float:
     release, stick = release[has_slipped], stick[has_slipped]
     # The number is largest right after a release, or at the start of the second half.
     times = np.append(start, release[release > start])
-    # The times are nearly in order, for which a stable sort is fast. NaN is sorted last.
+    # Count the releases and the sticks up to each time. The times are nearly in order, for which a
+    # stable sort is fast. NaN is sorted last, so that it is not counted.
     released_count = np.searchsorted(np.sort(release, kind="stable"), times, side="right")
     stuck_count = np.searchsorted(np.sort(stick, kind="stable"), times, side="right")
     return float(np.max(released_count - stuck_count))
@@ -212,6 +239,7 @@ def _entry_of_far_field(profile: Prestress) -> tuple[float, float]:
 
     The far field begins beyond the Gaussian, and beyond all steps and points of the pre-stress.
     """
+    # If there is no Gaussian, its width is None. The unit of length takes its place.
     width = profile.width or 1.0
     distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
     start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
@@ -219,43 +247,45 @@ def _entry_of_far_field(profile: Prestress) -> tuple[float, float]:
 
 
 def far_field(run: AnyRun) -> dict[str, float]:
-    """Measure how the pulse on the right changes over the last third of a run with samples.
+    """Measure how the pulse on the right changes from an early time to the end of a run.
 
-    Only the far field is used, where the pre-stress is constant.
+    The early time is the sampled time at two thirds of the run. Only the far field is used, where
+    the pre-stress is constant.
 
     profile_change : largest change of slip velocity in the frame that moves at the wave speed,
-        divided by the peak velocity at the start of this third
+        divided by the early peak velocity
     energy_change : relative change of the sum of kinetic and strain energy
-    strain_left : largest strain at the end where the pulse entered the far field, divided by the
-        largest strain anywhere
+    strain_left : largest final strain where the pulse entered the far field, divided by the largest
+        final strain anywhere in it
 
-    All are NaN if nothing slid in the far field at two thirds of the duration.
+    All are NaN if nothing slid in the far field at the early time.
     """
-    start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
+    far_start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
     times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
+    # Index of the early time. The index of the final time is -1.
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
-    elapsed = float(times[-1] - times[early])
     velocity, slip = np.asarray(run["sample_velocity"]), np.asarray(run["sample_slip"])
-    is_far = x >= start
+    is_far = x >= far_start
     early_peak = np.max(velocity[early][is_far], initial=0.0)
     if np.count_nonzero(is_far) < MIN_FAR_SAMPLES or not early_peak > 0.0:
         return {"profile_change": np.nan, "energy_change": np.nan, "strain_left": np.nan}
-    strain = np.gradient(slip[:, is_far], x[is_far], axis=1)
-    final_strain = np.abs(strain[-1])
+    far_x, strain = x[is_far], np.gradient(slip[:, is_far], x[is_far], axis=1)
 
     def energy(sample: int) -> float:
         """Return the kinetic and strain energy in the far field at a sampled time, by its index."""
         density = 0.5 * (velocity[sample][is_far] ** 2 + strain[sample] ** 2)
-        return np.trapezoid(density, x[is_far])
+        return np.trapezoid(density, far_x)
 
     early_energy, final_energy = energy(early), energy(-1)
-    # The wave speed is 1, so the elapsed time is also the distance that a wave has travelled.
-    stays_in_view = is_far & (x + elapsed <= x[-1])
-    final_velocity = np.interp(x[stays_in_view] + elapsed, x, velocity[-1])
-    largest_change = np.max(np.abs(final_velocity - velocity[early][stays_in_view]))
-    at_entry = x[is_far] <= entry_end
+    # A wave travels this distance from the early time to the end, because the wave speed is 1. Each
+    # early velocity is compared with the final velocity at this distance ahead, if it is sampled.
+    travelled = float(times[-1] - times[early])
+    is_compared = is_far & (x + travelled <= x[-1])
+    final_velocity = np.interp(x[is_compared] + travelled, x, velocity[-1])
+    largest_change = np.max(np.abs(final_velocity - velocity[early][is_compared]))
+    final_strain = np.abs(strain[-1])
     return {
         "profile_change": float(largest_change / early_peak),
         "energy_change": float(final_energy / early_energy - 1.0),
-        "strain_left": float(np.max(final_strain[at_entry]) / np.max(final_strain)),
+        "strain_left": float(np.max(final_strain[far_x <= entry_end]) / np.max(final_strain)),
     }

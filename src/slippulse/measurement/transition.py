@@ -85,22 +85,23 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     """
     balance_distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * balance_distance, "left")
-    release_times, distances = front_path(run, "left")
-    arrest_time, arrest_distance = np.nan, np.nan
-    if release_times.size and np.isinf(known_until(run, "left")):
-        arrest_time, arrest_distance = float(np.max(release_times)), float(distances[-1])
     wait_fraction = longest_wait / time
     state, right_distance = "not reached", np.nan
     if not np.isnan(time):
         state = "stalled" if wait_fraction > STALLED_WAIT_FRACTION else "resolved"
         right_distance = float(front_position(run, time, "right"))
+    # The last release is not known if an exact solution does not know the front until the end.
+    release_times, distances = front_path(run, "left")
+    last_time, last_distance = np.nan, np.nan
+    if release_times.size and np.isinf(known_until(run, "left")):
+        last_time, last_distance = float(np.max(release_times)), float(distances[-1])
     return {
         "transition_time": time,
         "transition_longest_wait": wait_fraction,
         "transition_state": state,
         "transition_length": fraction * balance_distance + right_distance,
         "balance_distance": balance_distance,
-        "last_release_time": arrest_time,
-        "last_release_distance": arrest_distance,
-        "last_release_length": between_fronts(run, arrest_time),
+        "last_release_time": last_time,
+        "last_release_distance": last_distance,
+        "last_release_length": between_fronts(run, last_time),
     }

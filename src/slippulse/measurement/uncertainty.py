@@ -37,8 +37,8 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     factors : c_1 and c_2
 
     If no order p within ORDER_RANGE fits, the value is not extrapolated. The uncertainty is then
-    that of a quantity with the lowest order of this range whose values have the same spread. It is
-    NaN if a value is missing.
+    (largest value - smallest value)/(c_2^p - 1) with the lowest p of this range. It is NaN if a
+    value is missing.
     """
     finest, middle, coarsest = (float(value) for value in values)
     if not all(map(math.isfinite, (finest, middle, coarsest))):
@@ -47,7 +47,7 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     middle_change, coarsest_change = middle - finest, coarsest - finest
 
     def mismatch(order: float) -> float:
-        """Return 0 if the two changes have the ratio that this order implies."""
+        """Return 0 if the two changes have the ratio (c_1^p - 1)/(c_2^p - 1) of this order p."""
         middle_power, coarsest_power = factors[0] ** order - 1.0, factors[1] ** order - 1.0
         return coarsest_change * middle_power - middle_change * coarsest_power
 
@@ -86,9 +86,11 @@ def grid_tables(
     """
     finest = tables[0]
     names = studied_columns(finest, keys)
-    # This array has one row for each run and quantity, and one column for each spacing.
+    # All quantities of the first run are followed by those of the second run, and so on. This array
+    # has one row for each run and quantity, and one column for each spacing.
     values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
     studies = pd.DataFrame([grid_study(three_values, factors) for three_values in values])
     runs = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])
+    # Each run is repeated once for each quantity.
     rows = runs.loc[runs.index.repeat(len(names))].reset_index(drop=True)
     return rows.assign(quantity=names * len(finest)).join(studies)

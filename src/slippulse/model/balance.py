@@ -2,19 +2,26 @@
 
 Under a stress boundary, a rupture that runs into negative pre-stress stops where the integral of
 the pre-stress over the rupture vanishes. The integral is computed in closed form, interval by
-interval. The balance position is found by bisection. If the pre-stress is a table of points,
-`_balance_of_table` first walks from the nucleation to the left until the integral changes sign.
+interval. The balance position is found by bisection. A pre-stress with steps, bumps or points may
+be balanced at several positions. The rupture stops at the nearest one, so `_nearest_balance` first
+walks from the nucleation to the left until the integral changes sign.
 """
 
 import math
 from collections.abc import Callable, Iterator
 from functools import lru_cache, partial
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from .checks import check_kind, check_that
 from .prestress import Interval, Prestress
+
+# Distances from the centre of a Gaussian, in units of its width, at which the walk of
+# `_nearest_balance` stops. Between two of them the pre-stress changes its sign at most once, unless
+# it hardly crosses 0.
+OFFSETS_FROM_GAUSSIANS = np.linspace(-5.0, 5.0, 41).tolist()
 
 
 def integral(prestress: Prestress, lower: float, upper: float) -> float:
@@ -40,6 +47,7 @@ def _integral_in_interval(
     (peak - background) exp(-x^2 / 2 width^2).
     """
     peak, width = prestress.peak, prestress.width
+    # The background is constant on an infinite interval, for which the formulas below would fail.
     if interval.left_value == interval.right_value:
         level = interval.left_value
         total = level * (end - start)
@@ -48,6 +56,7 @@ def _integral_in_interval(
         return total
     rise = interval.right_value - interval.left_value
     slope = rise / (interval.right - interval.left)
+    # The integral of the background is its value in the middle times the length.
     middle = 0.5 * (start + end)
     value_in_middle = interval.left_value + slope * (middle - interval.left)
     total = value_in_middle * (end - start)
@@ -109,7 +118,10 @@ def prestress_balance_position(prestress: Prestress) -> float:
 
 @lru_cache(maxsize=1024)
 def _balance_position(prestress: Prestress) -> float:
-    """Compute `prestress_balance_position`; results are cached."""
+    """Return the position x_minus < 0 from which the integral of the pre-stress to infinity is 0.
+
+    `prestress_balance_position` names the conditions and errors. Results are cached.
+    """
     # On the right the level is 0, so that integrals to infinity end at this distance.
     distance = _distance_of_levels(prestress)
     left, right = prestress.level(np.array([-distance, distance])).tolist()
@@ -117,8 +129,10 @@ def _balance_position(prestress: Prestress) -> float:
     check_that(right == 0.0, "prestress.right", right, allowed)
     allowed = "< 0, since otherwise the pre-stress is never balanced"
     check_that(left < 0.0, "prestress.left", left, allowed)
-    if prestress.points:
-        return _balance_of_table(prestress, distance)
+    if prestress.points or prestress.steps or prestress.bumps:
+        return _nearest_balance(prestress, distance)
+    # The balance lies between these positions. The lower one is moved to the left until the
+    # integral from there is not positive.
     lower, upper = -distance, 0.0
     while integral(prestress, lower, distance) > 0.0:
         lower *= 2.0
@@ -131,6 +145,7 @@ def _distance_of_levels(prestress: Prestress) -> float:
     """Return a distance from x = 0 beyond which the profile equals its level on either side.
 
     The values are equal to machine precision, because at 40 widths a Gaussian has no digits left.
+    Beyond a step or a point any margin is enough.
     """
     distances = [abs(centre) + 40.0 * width for centre, width in prestress.gaussians]
     distances += [abs(position) + (prestress.width or 1.0) for position, _ in prestress.steps]
@@ -138,29 +153,32 @@ def _distance_of_levels(prestress: Prestress) -> float:
     return max(distances, default=1.0)
 
 
-def _balance_of_table(prestress: Prestress, distance: float) -> float:
+def _nearest_balance(prestress: Prestress, distance: float) -> float:
     """Return the balance position that is nearest to the nucleation, on its left.
 
     The integral from a position to infinity is followed from the nucleation to the left, part by
-    part. Within each part of an interval the background keeps its sign, so that the integral cannot
-    change sign twice. The balance lies in the first part at whose left end the integral is
-    negative.
+    part. The parts are so short that the pre-stress changes its sign at most once within each. The
+    balance lies in the first part at whose left end the integral is negative.
 
     distance : distance from x = 0 beyond which the pre-stress equals its level on either side. On
         the right the level is 0, so that an integral to infinity ends there.
     """
-    x, tau = prestress.point_arrays
-    # A table without a Gaussian at x = 0 is released wherever it reaches 1.
-    released = x[tau >= min(1.0, float(tau.max()))]
-    nucleation = 0.0 if prestress.width is not None else float(released[0])
+    nucleation = 0.0
+    if prestress.width is None:
+        # Without a Gaussian at x = 0, the rupture starts at the points that reach 1 or, if none
+        # does, at the largest value. This is the leftmost of these points.
+        x, tau = prestress.point_arrays
+        nucleation = float(x[tau >= min(1.0, float(tau.max()))][0])
     integral_from_right_end = integral(prestress, nucleation, distance)
     if not integral_from_right_end >= 0.0:
         raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
     for part in _parts_leftwards(prestress, nucleation):
+        # A function of the position within this part.
         integral_from = partial(_integral_from, prestress, part, integral_from_right_end)
         left_end = part.left
         if left_end == -math.inf:
-            # The outermost part is infinite. Its length is doubled until the integral is negative.
+            # The last part is infinite. A finite length of it, which is doubled until the integral
+            # is negative, is enough.
             left_end = part.right - 1.0
             while integral_from(left_end) >= 0.0:
                 left_end = part.right - 2.0 * (part.right - left_end)
@@ -173,7 +191,7 @@ def _balance_of_table(prestress: Prestress, distance: float) -> float:
 
 
 class _Part(NamedTuple):
-    """Part of an interval, from ``left`` to ``right``, on which the background keeps its sign."""
+    """Part of an interval, from ``left`` to ``right``."""
 
     interval: Interval
     left: float
@@ -194,20 +212,27 @@ def _integral_from(
 
 
 def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
-    """Yield the parts of the intervals to the left of ``start``, from right to left.
+    """Yield parts of the intervals to the left of ``start``, from right to left.
 
-    An interval in which the background changes its sign has two parts, any other interval has one.
+    Intervals are divided where the background changes its sign, and into short parts near
+    Gaussians.
     """
-    for interval in reversed(prestress.intervals):
-        left, right, left_value, right_value = interval
+    positions = [
+        centre + offset * width
+        for centre, width in prestress.gaussians
+        for offset in OFFSETS_FROM_GAUSSIANS
+    ]
+    for left, right, left_value, right_value in prestress.intervals:
         if left_value * right_value < 0.0:
-            zero = left - left_value * (right - left) / (right_value - left_value)
-            ranges = [(zero, right), (left, zero)]
-        else:
-            ranges = [(left, right)]
-        for part_left, part_right in ranges:
-            if part_left < min(part_right, start):
-                yield _Part(interval, part_left, min(part_right, start))
+            positions.append(left - left_value * (right - left) / (right_value - left_value))
+    divisions = np.sort(positions)
+    for interval in reversed(prestress.intervals):
+        left_end, right_end = interval.left, min(interval.right, start)
+        is_inside = (divisions > left_end) & (divisions < right_end)
+        part_ends = [left_end, *divisions[is_inside].tolist(), right_end]
+        for left, right in reversed(list(pairwise(part_ends))):
+            if left < right:
+                yield _Part(interval, left, right)
 
 
 def root_to_last_bit(function: Callable[[float], float], lower: float, upper: float) -> float:

@@ -69,7 +69,7 @@ def check_number(key: str, value: Any, integer: bool = False, **limits: float) -
     except OverflowError:
         # The value is an integer that is too large for a float.
         is_finite = False
-    # A limit may be too large for single precision.
+    # A number of single precision is converted, because a limit may be too large for its type.
     number = float(value) if is_finite and not integer else value
     if is_finite and all(COMPARISONS[name](number, limit) for name, limit in limits.items()):
         return

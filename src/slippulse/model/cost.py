@@ -9,6 +9,7 @@ estimate.
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -164,36 +165,36 @@ def _bound_scene_reach(scene: Scene) -> float:
     end_of_peak = GAUSSIAN_END_IN_WIDTHS * (profile.width or 0.0)
     # The sum is at least as large as each of these distances.
     start = max(end_of_bumps, profile.nucleation_reach) + end_of_peak
+    return bound_front_reach(profile, start, scene.duration, partial(_bound_speeds, scene))
 
-    def bound_speeds(levels: np.ndarray) -> np.ndarray:
-        """Return upper bounds on the front speeds at levels of pre-stress.
 
-        They are larger than the exact speed at any damping and under both release rules.
-        """
-        # Without a table there are few levels, and the highest one bounds the speed everywhere.
-        level = np.clip(levels if profile.points else np.max(levels), 0.0, MAX_LEVEL)
-        # Without damping, the front speed is 1/sqrt(1 - tau^2).
-        speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))
-        if scene.release == "total":
-            # Under this release rule, strong damping makes fronts faster without limit.
-            speed = speed + SPEED_MARGIN * scene.damping_ratio * level / (1.0 - level)
-        return np.broadcast_to(speed, levels.shape)
+def _bound_speeds(scene: Scene, levels: np.ndarray) -> np.ndarray:
+    """Return an upper bound on the speed of a front of the scene at each level of pre-stress.
 
-    return bound_front_reach(profile, start, scene.duration, bound_speeds)
+    The bounds are larger than the exact speeds at any damping and under both release rules.
+    """
+    # If the pre-stress is not a table, the bound at the highest level is used for all levels.
+    level = np.clip(levels if scene.prestress.points else np.max(levels), 0.0, MAX_LEVEL)
+    # Without damping, the front speed is 1/sqrt(1 - tau^2).
+    speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))
+    if scene.release == "total":
+        # Under this release rule, strong damping makes fronts faster without limit.
+        speed = speed + SPEED_MARGIN * scene.damping_ratio * level / (1.0 - level)
+    return np.broadcast_to(speed, levels.shape)
 
 
 def bound_cost(scene: Scene, samples: Samples | None = None) -> Bound:
-    """Return an upper bound on the cost of one run."""
-    reach = _bound_scene_reach(scene)
+    """Return an upper bound on the cost of one run, which may record samples."""
+    # Only one half of a symmetric lattice is simulated.
     sides = 1.0 if scene.symmetric else 2.0
-    blocks = sides * (reach / scene.dx + MARGIN_BLOCKS)
+    blocks = sides * (_bound_scene_reach(scene) / scene.dx + MARGIN_BLOCKS)
     if scene.scheme == "continuum":
         updates = UPDATES_PER_EXACT_BLOCK * blocks
     else:
-        # Steps of full length, and steps that end early because of their events.
-        steps = scene.duration / (scene.max_step * scene.dx)
-        steps += EVENTS_PER_BLOCK * blocks / MAX_EVENTS_PER_STEP
-        updates = steps * blocks
+        # Steps of full length, and steps that end early because of the many events in them.
+        full_steps = scene.duration / (scene.max_step * scene.dx)
+        short_steps = EVENTS_PER_BLOCK * blocks / MAX_EVENTS_PER_STEP
+        updates = (full_steps + short_steps) * blocks
     sample_bytes = 0.0
     if samples is not None:
         sample_bytes = BYTES_PER_SAMPLE * samples.times.size * samples.positions.size

@@ -80,10 +80,9 @@ class LayerMaterial:
         check_that(are_usable, "layer", self.mapping(), "numbers near those of a material")
 
     def _set_second_modulus(self) -> None:
-        """Convert the second modulus to a float. It is given in one of two ways.
+        """Convert ``lame_parameter`` or ``poisson_ratio`` to a float, whichever is given.
 
-        Raises ValueError unless exactly one of ``lame_parameter`` and ``poisson_ratio`` is given,
-        and is within its range.
+        Raises ValueError unless exactly one of them is given, and is within its range.
         """
         moduli = {"lame_parameter": self.lame_parameter, "poisson_ratio": self.poisson_ratio}
         given_names = [name for name, value in moduli.items() if value is not None]
@@ -91,7 +90,7 @@ class LayerMaterial:
             text = " and ".join(given_names) or "missing"
             raise ValueError(f"lame_parameter, poisson_ratio: {text}; allowed: one of the two")
         if self.poisson_ratio is None:
-            # The bulk modulus is positive, which is a Poisson's ratio above -1.
+            # At this bound the bulk modulus is 0, and Poisson's ratio is -1.
             check_number(
                 "lame_parameter", self.lame_parameter, above=-2.0 / 3.0 * self.shear_modulus
             )
@@ -110,6 +109,7 @@ class LayerMaterial:
         """Modulus lambda + 2G of uniaxial strain (Pa)."""
         if self.lame_parameter is not None:
             return self.lame_parameter + 2.0 * self.shear_modulus
+        # Here the ratio is not None, but type checkers do not know that.
         poisson_ratio = self.poisson_ratio or 0.0
         return 2.0 * self.shear_modulus * (1.0 - poisson_ratio) / (1.0 - 2.0 * poisson_ratio)
 

@@ -191,17 +191,17 @@ class Layer(LayerMaterial):
         -------
         Prestress
         """
-        given, key = prestress_in_pascal, "prestress_in_pascal"
+        # The key is the name with which messages about the stress begin.
+        stress, key = prestress_in_pascal, "prestress_in_pascal"
         width, peak = self._gaussian_from_si(width_in_metres, peak_in_pascal)
-        if isinstance(given, Real) and not isinstance(given, bool):
-            (level,) = self.table_from_pascal(key, [given]).tolist()
+        if isinstance(stress, Real) and not isinstance(stress, bool):
+            (level,) = self.table_from_pascal(key, [stress]).tolist()
             return Prestress(left=level, right=level, width=width, peak=peak)
-        if isinstance(given, str | PathLike):
-            # Messages about the table begin with the path of its file.
-            key = str(given)
-            positions, stresses = read_in_si(Path(given))
+        if isinstance(stress, str | PathLike):
+            key = str(stress)
+            positions, stresses = read_in_si(Path(stress))
         else:
-            positions, stresses = _columns(given)
+            positions, stresses = _positions_and_stresses(stress)
         tau = self.table_from_pascal(key, stresses)
         # Errors of the profile are about non-dimensional numbers. The units are added to them.
         try:
@@ -213,7 +213,10 @@ class Layer(LayerMaterial):
     def _gaussian_from_si(
         self, width_in_metres: float | None, peak_in_pascal: float | None
     ) -> _Gaussian:
-        """Convert width and peak of the Gaussian at x = 0. The default peak is 1."""
+        """Convert width and peak of the Gaussian at x = 0 to numbers without units.
+
+        If there is no width, there is no Gaussian. The default peak is 1, which is static friction.
+        """
         width, peak = None, 1.0
         if width_in_metres is not None:
             check_number("width_in_metres", width_in_metres, above=0.0)
@@ -441,16 +444,16 @@ def _check_run(run: Any) -> None:
     check_that(is_run, "run", type(run).__name__, allowed)
 
 
-def _columns(given: Any) -> tuple[np.ndarray, np.ndarray]:
+def _positions_and_stresses(pair: Any) -> tuple[np.ndarray, np.ndarray]:
     """Convert a pair of sequences to arrays: positions (m) from left to right, and stresses (Pa).
 
     Raises ValueError if the pair is not a table of at least two points in this order.
     """
     try:
-        x, stress = given
+        x, stress = pair
     except (TypeError, ValueError):
         allowed = "a stress in Pa, a pair (positions in m, stresses in Pa), or a file"
-        raise ValueError(f"prestress_in_pascal: {short_repr(given)}; allowed: {allowed}") from None
+        raise ValueError(f"prestress_in_pascal: {short_repr(pair)}; allowed: {allowed}") from None
     positions = as_numbers("prestress_in_pascal positions", x)
     stresses = as_numbers("prestress_in_pascal stresses", stress)
     have_equal_shapes = positions.ndim == 1 and positions.shape == stresses.shape

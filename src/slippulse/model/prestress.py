@@ -117,13 +117,14 @@ class Prestress(ExplainsRemovedNames):
         for name in PART_RANGES:
             object.__setattr__(self, name, convert_part(name, getattr(self, name)))
         object.__setattr__(self, "points", convert_points(self.points))
+        # A step at x = 0 is the difference of left and right.
         positions = [position for position, _ in self.steps]
         are_distinct = 0.0 not in positions and len({*positions}) == len(positions)
         allowed = "different positions, none of them 0 (see left, right)"
         check_that(are_distinct, "prestress.steps", positions, allowed)
-        has_peak = self.width is not None or self.peak == 1.0
+        is_peak_allowed = self.width is not None or self.peak == 1.0
         allowed = "1 without a width, since there is then no Gaussian"
-        check_that(has_peak, "prestress.peak", self.peak, allowed)
+        check_that(is_peak_allowed, "prestress.peak", self.peak, allowed)
         if self.points:
             self._check_points()
 
@@ -460,21 +461,24 @@ def prestress_from(attributes: Mapping) -> Prestress:
     if isinstance(width, float) and math.isnan(width):
         width = None
     arguments = (parts_as_json, left, right, width, peak)
-    # A value that cannot be a key of the cache, such as a list, is refused by `_from_text`.
+    # The result is cached, with the arguments as its key. A value that cannot be a key, such as a
+    # list, is not allowed, and `_make_prestress` raises the error.
     if all(isinstance(value, Hashable) for value in arguments):
-        return _cached_from_text(*arguments)
-    return _from_text(*arguments)
+        return _cached_make_prestress(*arguments)
+    return _make_prestress(*arguments)
 
 
-def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
+def _make_prestress(parts_as_json: Any, left: Any, right: Any, width: Any, peak: Any) -> Prestress:
     """Make a pre-stress from its four numbers, and from its steps, bumps and points as JSON."""
     try:
-        given = {"points": ()} | json.loads(text)
-        parts = {name: given[name] for name in (*PART_RANGES, "points")}
+        # A profile that is not a table has no points.
+        recorded = {"points": ()} | json.loads(parts_as_json)
+        parts = {name: recorded[name] for name in (*PART_RANGES, "points")}
     except (TypeError, ValueError, LookupError):
         allowed = "a JSON object of steps and bumps, and points of a table"
-        raise ValueError(f"steps_and_bumps: {short_repr(text)}; allowed: {allowed}") from None
-    # A measured table replaces the points of a long table by a digest, which is text.
+        text = short_repr(parts_as_json)
+        raise ValueError(f"steps_and_bumps: {text}; allowed: {allowed}") from None
+    # In a row of measured numbers, a digest (text) may take the place of many points.
     is_digest = isinstance(parts["points"], str)
     allowed = "the points themselves, which are in the data file of the run"
     check_that(not is_digest, "steps_and_bumps points", parts["points"], allowed)
@@ -482,4 +486,4 @@ def _from_text(text: Any, left: Any, right: Any, width: Any, peak: Any) -> Prest
 
 
 # Every measurement of a run needs its pre-stress, which is therefore cached for a few runs.
-_cached_from_text = lru_cache(maxsize=8, typed=True)(_from_text)
+_cached_make_prestress = lru_cache(maxsize=8, typed=True)(_make_prestress)

@@ -28,42 +28,43 @@ def sample_function(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and values whose linear interpolation is accurate to a tolerance.
 
-    The module docstring describes the algorithm.
+    An interval between two samples is divided as long as the function differs from the straight
+    line by more than the tolerance at one of the TEST_FRACTIONS of the interval.
     """
     check_number("start", start)
     check_number("stop", stop, above=start)
     check_number("tolerance", tolerance, above=0.0)
     check_that(callable(function), "function", function, "a function of the position")
-    x = np.linspace(start, stop, FIRST_SAMPLES)
-    tau = _evaluate(function, x)
-    # An interval has the same index as the sample at its left end.
-    untested = np.arange(x.size - 1)
-    while untested.size:
-        left_ends, lengths = x[untested], x[untested + 1] - x[untested]
+    min_length = MIN_INTERVAL_FRACTION * (stop - start)
+    positions = np.linspace(start, stop, FIRST_SAMPLES)
+    values = _evaluate(function, positions)
+    # The ends of the untested intervals, and the values there.
+    left, right = positions[:-1], positions[1:]
+    left_values, right_values = values[:-1], values[1:]
+    while left.size:
         # Arrays with one row for each untested interval, and one column for each test position.
-        test_positions = left_ends[:, None] + lengths[:, None] * TEST_FRACTIONS
+        lengths, rises = right - left, right_values - left_values
+        test_positions = left[:, None] + lengths[:, None] * TEST_FRACTIONS
         test_values = _evaluate(function, test_positions)
-        rises = tau[untested + 1] - tau[untested]
-        values_on_line = tau[untested, None] + rises[:, None] * TEST_FRACTIONS
+        values_on_line = left_values[:, None] + rises[:, None] * TEST_FRACTIONS
         errors = np.max(np.abs(test_values - values_on_line), axis=1)
-        min_length = MIN_INTERVAL_FRACTION * (stop - start)
         is_divided = (errors > tolerance) & (lengths > min_length)
         # The test positions of a divided interval become samples.
-        positions = np.append(x, test_positions[is_divided].ravel())
-        values = np.append(tau, test_values[is_divided].ravel())
+        positions = np.append(positions, test_positions[is_divided].ravel())
+        values = np.append(values, test_values[is_divided].ravel())
         check_that(
             positions.size <= MAX_TABLE_POINTS,
             "tolerance",
             tolerance,
             f"a tolerance that {MAX_TABLE_POINTS} samples can meet",
         )
-        order = np.argsort(positions, kind="stable")
-        x, tau = positions[order], values[order]
-        # The parts of a divided interval are tested next. The first one has the same left end.
-        first_parts = np.searchsorted(x, left_ends[is_divided])
-        parts_per_interval = TEST_FRACTIONS.size + 1
-        untested = (first_parts[:, None] + np.arange(parts_per_interval)).ravel()
-    return x, tau
+        # The parts of the divided intervals are tested next.
+        ends = np.column_stack([left, test_positions, right])[is_divided]
+        end_values = np.column_stack([left_values, test_values, right_values])[is_divided]
+        left, right = ends[:, :-1].ravel(), ends[:, 1:].ravel()
+        left_values, right_values = end_values[:, :-1].ravel(), end_values[:, 1:].ravel()
+    order = np.argsort(positions, kind="stable")
+    return positions[order], values[order]
 
 
 def _evaluate(function: Callable[[float], Any], positions: np.ndarray) -> np.ndarray:

@@ -47,12 +47,11 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
         """Convert damping_ratio to beta, and call the original ``__init__``."""
-        unknown_names = values.keys() - signature.parameters
-        for name in unknown_names:
+        for name in values.keys() - signature.parameters:
             refuse_removed_argument("Scene", name)
         # All arguments by name, including those that were given by position.
-        bind = partial(signature.bind_partial, self, *given)
-        arguments = bind(**values).arguments
+        bind_values = partial(signature.bind_partial, self, *given)
+        arguments = bind_values(**values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
@@ -220,10 +219,12 @@ class Scene:
 
     def _check_profile(self) -> None:
         """Raise ValueError if the lattice does not resolve the pre-stress, or would be too long."""
+        # The width is None if there is no Gaussian at x = 0.
         peak_width = self.prestress.width
         is_resolved = peak_width is None or peak_width >= self.dx
         allowed = f">= dx = {self.dx:g}, so that blocks resolve it"
         check_that(is_resolved, "prestress.width", peak_width, allowed)
+        # The lattice has all bumps and all points that reach 1 from the start, which needs memory.
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
         if self.prestress.points and self.scheme != "continuum":
             check_resolved(self.prestress, self.dx)
@@ -405,8 +406,11 @@ def stability_ratios(values: Mapping, friction: Friction) -> StabilityRatios:
     values : parameters of a scene by name
     """
     dx, stiffness = values["dx"], values["gamma"]
-    slope = friction.traits.max_rate_slope
-    return StabilityRatios(values["beta"] / dx, stiffness * dx**2, slope * dx)
+    return StabilityRatios(
+        damping_ratio=values["beta"] / dx,
+        stiffness=stiffness * dx**2,
+        friction_slope=friction.traits.max_rate_slope * dx,
+    )
 
 
 # Results among the attributes of a run that measurements and figures need.

@@ -96,7 +96,10 @@ def converted_run(run: Any, convert: Converter) -> Any:
 
 
 def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[str, Any]:
-    """Return all numbers by name; those that have a unit are converted."""
+    """Return all numbers by name; those that have a unit are converted.
+
+    The parts of the pre-stress, which are recorded as a JSON text, are converted, too.
+    """
     converted = dict(numbers)
     for name in QUANTITIES.keys() & converted.keys():
         if converted[name] is not None:
@@ -110,8 +113,9 @@ def _converted_parts(text: str, convert: Converter) -> str:
     """Convert the steps, bumps and points of a pre-stress, which are given and returned as JSON."""
     parts = json.loads(text)
     for part, rows in parts.items():
-        # A measured table has a digest, which is text, in place of the points.
+        # In a row of measured numbers, a digest (text) may take the place of many points.
         if isinstance(rows, list):
+            # The quantity of each number in a row, such as (length, stress) for a step.
             quantities = PROFILE_QUANTITIES[part]
             parts[part] = [list(map(convert, row, quantities)) for row in rows]
     return json.dumps(parts)

@@ -33,6 +33,7 @@ def _unit_value(path: str | Path, column: str, unit: str, unit_values: dict[str,
     unit_values : the values of all units that the column may have
     """
     if unit not in unit_values:
+        # The empty unit, which means SI units, is not listed.
         allowed = ", ".join(filter(None, unit_values))
         raise StressFileError(f"{path}: unit {short_repr(unit)} of {column}; allowed: {allowed}")
     return unit_values[unit]

@@ -53,8 +53,9 @@ def largest_step(
     # If alpha is negative, slip grows physically, and the step need not prevent that.
     drag = max(alpha_dx, 0.0)
     if scheme == "fixed_step":
+        # Here critical is dt_c, and damping is c. The form sqrt(dt_c^2 + c^2) - c loses digits at
+        # large damping; the equal form below does not.
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
-        # The form sqrt(dt_c^2 + c^2) - c loses digits at large damping; this equal form does not.
         damping = damping_ratio + 0.25 * drag
         return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
     # The results of `_taylor_bound` are cached, and rounded arguments find one more often.
@@ -89,6 +90,7 @@ def choose_step(scheme: str, order: int, *ratios: float) -> float:
     ratios : beta/dx, gamma dx^2 and, optionally, alpha dx (see `largest_step`)
     """
     stable = STABILITY_MARGIN * largest_step(scheme, order, *ratios)
+    # Only this scheme takes Taylor steps.
     if scheme != "localised":
         return stable
     return min(stable, accurate_step(MAX_STEP_ERROR, order, *ratios))
@@ -99,6 +101,8 @@ def choose_step(scheme: str, order: int, *ratios: float) -> float:
 def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
     """Return the largest stable Taylor step, in units of dx; 0 if the polynomials overflow.
 
+    The interval that contains the bound is divided again and again.
+
     drag : alpha dx, not negative
     """
     # The numbers s of the modes, from the longest to the shortest one (see `largest_step`).
@@ -107,13 +111,6 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
         order, stiffness=s + gamma_dx2, damping=damping_ratio * s + drag
     )
     max_amplification = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
-
-    def are_unstable(steps: np.ndarray) -> np.ndarray:
-        """Return a mask of the steps that amplify a mode by more than is allowed."""
-        largest = np.max(_amplifications(steps, derivatives), axis=-1)
-        # Written with ~ so that an amplification of NaN counts as unstable.
-        return ~(largest <= max_amplification)
-
     # The shortest step that is tried. If it is unstable, the bound lies between 0 and this step.
     shortest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if shortest == 0.0:
@@ -123,7 +120,11 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     for _ in range(SEARCH_ROUNDS):
         # The first step is stable and the last one is unstable. They are not tested again, since
         # rounding may make the last one look stable.
-        is_unstable = np.append(are_unstable(steps[1:-1]), True)
+        largest_of_modes = np.max(_amplifications(steps[1:-1], derivatives), axis=1)
+        # Written with ~ so that an amplification of NaN counts as unstable.
+        is_unstable = np.append(~(largest_of_modes <= max_amplification), True)
+        # This mask begins with the second step. The index of its first unstable step is therefore
+        # that of the step before, the last stable one.
         last_stable = int(np.argmax(is_unstable))
         steps = np.linspace(steps[last_stable], steps[last_stable + 1], PARTS_PER_ROUND + 1)
     return float(steps[0])
@@ -153,20 +154,25 @@ def _amplifications(steps: np.ndarray, derivatives: np.ndarray) -> np.ndarray:
     A step maps the slip and the velocity of a mode to new ones by a matrix of 2 x 2 numbers. Its
     larger eigenvalue, in absolute value, is the amplification.
 
-    derivatives : array of shape (orders, 2, modes), see `_mode_derivatives`
+    derivatives : derivative k of the slip of each mode, as the two coefficients of the slip and the
+        velocity at the start of the step; array of shape (derivatives, 2, modes)
     """
     degrees = np.arange(len(derivatives))
     factorials = [math.factorial(k) for k in degrees]
     # The factors dt^k/k! of the Taylor series, for each step.
     factors = np.asarray(steps, dtype=float)[:, None] ** degrees / factorials
-    # The two rows of the matrix. Index 0 is the coefficient of the old slip, 1 of the old velocity.
+    # The sum over k of dt^k/k! times derivative k gives the new slip, and the same sum over the
+    # next derivatives gives the new velocity. Both are arrays of shape (steps, 2, modes).
     slip = np.tensordot(factors, derivatives, 1)
     velocity = np.tensordot(factors[:, :-1], derivatives[1:], 1)
-    half_trace = 0.5 * (slip[:, 0] + velocity[:, 1])
-    determinant = slip[:, 0] * velocity[:, 1] - slip[:, 1] * velocity[:, 0]
+    # The matrix is ((a, b), (c, d)).
+    a, b = slip[:, 0], slip[:, 1]
+    c, d = velocity[:, 0], velocity[:, 1]
+    half_trace = 0.5 * (a + d)
+    determinant = a * d - b * c
     # The discriminant equals half_trace^2 - determinant. That form would lose digits for a mode
     # that feels drag but no springs.
-    discriminant = (0.5 * (slip[:, 0] - velocity[:, 1])) ** 2 + slip[:, 1] * velocity[:, 0]
+    discriminant = (0.5 * (a - d)) ** 2 + b * c
     larger_real_eigenvalue = np.abs(half_trace) + np.sqrt(np.maximum(discriminant, 0.0))
     # Two complex eigenvalues have the same absolute value.
     complex_eigenvalue = np.sqrt(np.maximum(determinant, 0.0))

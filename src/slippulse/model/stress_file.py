@@ -26,7 +26,8 @@ MAX_FILE_BYTES = 20_000_000
 NUMBER_PATTERN = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 # Characters that may separate the cells of a row. If the first row has none of them, spaces do.
 DELIMITERS = ",;\t"
-NETCDF_BEGINNINGS = (b"CDF", b"\x89HDF")
+HDF_BEGINNING = b"\x89HDF"
+NETCDF_BEGINNINGS = (b"CDF", HDF_BEGINNING)
 NETCDF_SUFFIXES = (".nc", ".nc4", ".cdf", ".h5")
 
 
@@ -92,6 +93,7 @@ def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -
     units = {"x": table.x_unit, "prestress": table.prestress_unit}
     for name, unit in units.items():
         if unit not in DIMENSIONLESS_UNITS[name]:
+            # The empty unit, which is allowed, is not listed.
             allowed = ", ".join(filter(None, DIMENSIONLESS_UNITS[name]))
             raise StressFileError(f"{path}: unit {short_repr(unit)} of {name}; allowed: {allowed}")
     for end, value in (("first", table.prestress[0]), ("last", table.prestress[-1])):
@@ -206,7 +208,7 @@ def _number(row: Row, names: Sequence[str], column: int) -> float:
 def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
     """Raise StressFileError if there are fewer than two rows, or if positions are not in order.
 
-    Positions increase from row to row. Two rows, but not three, may have the same position, at
+    Positions must increase from row to row. Two rows, but not three, may have the same position, at
     which the pre-stress jumps.
 
     rows : numbers of the rows in the file, for the message
@@ -231,7 +233,8 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
 
     import xarray as xr
 
-    engine = "h5netcdf" if content.startswith(NETCDF_BEGINNINGS[1]) else "scipy"
+    # A netCDF-4 file is an HDF5 file.
+    engine = "h5netcdf" if content.startswith(HDF_BEGINNING) else "scipy"
     try:
         data = xr.load_dataset(BytesIO(content), engine=engine, decode_times=False)
     except Exception as error:

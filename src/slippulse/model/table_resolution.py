@@ -20,7 +20,8 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     """
     x, tau = prestress.point_arrays
     in_spacings = x / dx
-    # Positions of three blocks for each point: on its left, nearest to it, and on its right.
+    # Positions of three blocks for each point: on its left, nearest to it, and on its right. The
+    # first axis of this array has length 3, and the second one is that of the points.
     left, right = np.ceil(in_spacings) - 1.0, np.floor(in_spacings) + 1.0
     neighbours = dx * np.array([left, np.round(in_spacings), right])
     is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
@@ -30,6 +31,7 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
         raise refusal(
             f"prestress.points {tau[missed_point]:g} at x", float(x[missed_point]), allowed
         )
+    # The loss of a point is the amount by which it is above or below all of its three blocks.
     at_blocks = prestress.level(neighbours)
     above_blocks = np.maximum(tau - at_blocks.max(axis=0), 0.0)
     below_blocks = np.maximum(at_blocks.min(axis=0) - tau, 0.0)

@@ -39,11 +39,11 @@ def solve_exactly(
     # Without a nucleation everything stays at rest.
     rupture = exact_rupture(scene) if nucleation_intervals(scene.prestress) else None
     x = _positions(scene, rupture)
-    fields = _fields(rupture, x, scene.duration)
+    fields = _fields_at_end(rupture, x, scene.duration)
     numbers = _numbers(rupture, fields, scene.duration)
-    sampled = _sampled(rupture, samples) if samples is not None else {}
+    fields |= _sampled_fields(rupture, samples) if samples is not None else {}
     flags = ("construction_ended",) if numbers["limit_reason"] else ()
-    return Solution(x, scene.prestress(x), numbers=numbers, flags=flags, **fields | sampled)
+    return Solution(x, scene.prestress(x), numbers=numbers, flags=flags, **fields)
 
 
 def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
@@ -63,7 +63,7 @@ def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
     return np.arange(first_block, last_block + 1) * scene.dx
 
 
-def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:
+def _fields_at_end(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:
     """Return the fields of a run at positions x.
 
     They are release and stick times, and slip, slip velocity and acceleration at the time ``end``.
@@ -88,7 +88,7 @@ def _fields(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.
     }
 
 
-def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]:
+def _sampled_fields(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]:
     """Return slip and slip velocity at the sampled times and positions, 0 without a rupture."""
     if rupture is None:
         zeros = np.zeros((samples.times.size, samples.positions.size))
@@ -100,7 +100,7 @@ def _sampled(rupture: Rupture | None, samples: Samples) -> dict[str, np.ndarray]
 def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float) -> dict:
     """Return the numbers of the solution, with the same keys as on a lattice.
 
-    fields : the fields at the time ``end``, see `_fields`
+    fields : the fields at the time ``end``, see `_fields_at_end`
     """
     first_stick = rupture.first_stick if rupture else None
     limit = rupture.limit if rupture else None

@@ -44,7 +44,8 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
 
     They are the number of blocks across the narrowest pulse, and the flags separated by commas.
     """
-    blocks, numbers = narrowest_pulse(scene, solution), solution.numbers
+    blocks = blocks_across_narrowest_pulse(scene, solution)
+    numbers = solution.numbers
     if numbers["releases"] == 0:
         return {"pulse_blocks": blocks, "run_flags": "nothing_released"}
     flags = {
@@ -53,6 +54,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         "first_stick_undone": first_stick_undone(scene, solution),
     }
     if scene.scheme == "localised":
+        # The error of a step depends on its order, and on ratios such as the damping ratio.
         longest_step = accurate_step(MAX_STEP_ERROR, scene.order, *scene.ratios)
         flags["long_step"] = scene.max_step > longest_step
     if scene.scheme != "continuum":
@@ -106,9 +108,9 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
     numbers, profile = solution.numbers, scene.prestress
     time, position = numbers["first_stick_time"], numbers["first_stick_position"]
     can_stick = scene.boundary == "displacement" or max(profile.left, profile.right) < 0.0
-    if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not can_stick or math.isnan(time):
+    if not can_stick or math.isnan(time) or first_stick_undone(scene, solution):
         return False
-    if first_stick_undone(scene, solution):
+    if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS:
         return False
     # Side of x = 0 on which the first block sticks: -1 for the left, 1 for the right.
     side = math.copysign(1.0, position)
@@ -123,8 +125,8 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
 def front_restarted(scene: Scene, solution: Solution) -> bool:
     """Return True if waves of a few blocks may have set a front in motion again.
 
-    This is possible if the damping is weak. Only tables of pre-stress are examined: between
-    constant levels, the state of the transition shows that a front was delayed.
+    This is possible if the damping is weak. Only tables of pre-stress are examined, because for
+    constant levels the measured state of the transition shows that a front was delayed.
     """
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
         return False
@@ -153,7 +155,7 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
     return scene.duration - last_stick > 2.0 * math.pi / math.sqrt(scene.gamma)
 
 
-def narrowest_pulse(scene: Scene, solution: Solution) -> int:
+def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
     """Return the number of blocks across the narrowest pulse at the end.
 
     Under a stress boundary, return the number of blocks across the nucleation. The number is 0
@@ -172,20 +174,22 @@ def narrowest_pulse(scene: Scene, solution: Solution) -> int:
 
 
 def _nucleation_width(scene: Scene, solution: Solution) -> float:
-    """Return the width of the Gaussian at x = 0, or of the whole run if there is none.
+    """Return the distance over which the pre-stress of the nucleation falls off.
 
-    If the pre-stress falls below 0 at a shorter distance, return that distance.
+    It is the width of the Gaussian at x = 0 (that of the whole run if there is no Gaussian), or the
+    distance at which the pre-stress falls below 0 if that is shorter.
     """
     profile, dx = scene.prestress, scene.dx
+    width = solution.x.size * dx if profile.width is None else profile.width
+    # A table of pre-stress.
     if profile.points:
-        width = solution.x.size * dx if profile.width is None else profile.width
         highest_block = np.argmax(solution.prestress)
         negative_blocks = np.flatnonzero(solution.prestress < 0.0)
         distances = np.abs(negative_blocks - highest_block) * dx
         return float(np.min(distances, initial=width))
     if profile.width is None:
-        return solution.x.size * dx
-    width = profile.width
+        return width
+    # A Gaussian that falls to a level on each side.
     for level in (profile.left, profile.right):
         if level < 0.0 < profile.peak:
             # Where level + (peak - level) exp(-x^2 / 2 width^2) is 0.

@@ -73,14 +73,16 @@ def simulate(
     check_that(is_valid, "progress", progress, "a function of the fraction done, True, or None")
     check_kind("strict", strict, bool)
     _check_sample_times(samples, scene.duration)
-    exceeded = bound_cost(scene, samples).exceeded(remedy="use run_sweep, which takes any scene")
+    # The message is empty if the run is not too long and does not need too much memory.
+    message = bound_cost(scene, samples).exceeded(remedy="use run_sweep, which takes any scene")
     # The exact solution itself refuses scenes that are too large, and names the key.
-    if exceeded and scene.scheme != "continuum":
-        raise ValueError(exceeded)
+    if message and scene.scheme != "continuum":
+        raise ValueError(message)
     if isinstance(progress, bool):
         progress = make_bar() if progress else None
     with announced_compilation():
         solution = _solve(scene, samples, progress)
+    # The Dataset also contains the flags of the run, and the units and names of its variables.
     run = with_descriptions(recorded(scene, samples, solution).dataset())
     if strict and run.attrs["run_flags"]:
         details = _flag_details(scene, run.attrs)

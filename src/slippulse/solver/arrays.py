@@ -12,7 +12,7 @@ import numpy as np
 
 from ..model.friction_laws.law import LawKink
 
-# Rows of `Motion.w`: time derivatives of slip.
+# Rows of `Motion.derivatives`: time derivatives of slip.
 SLIP = 0
 VELOCITY = 1
 ACCELERATION = 2
@@ -87,10 +87,10 @@ class Medium(NamedTuple):
 class Motion(NamedTuple):
     """State of the blocks. All values of a block at rest without slip are 0."""
 
-    # (K, N), time derivatives of slip at the start of the step, from slip w[0] on
-    w: np.ndarray
-    offset: np.ndarray  # (N,), change of w[0] by the events of this step, added at its end
-    velocity: np.ndarray  # (N,), slip velocity at the end of the step
+    # (K, N), time derivatives of slip at the start of the step; row k is derivative k
+    derivatives: np.ndarray
+    event_slip: np.ndarray  # (N,), slip that the events of this step add, until its end
+    end_velocity: np.ndarray  # (N,), slip velocity at the end of the step
     strain: np.ndarray  # (N,), (u_{i+1} - u_i)/dx
     tau: np.ndarray  # (N,), pre-stress
     # The next three are used only by laws of friction that are not linear in slip velocity.
@@ -148,8 +148,9 @@ class EventPrediction(NamedTuple):
 class Difference(NamedTuple):
     """Scratch of one event: the change that it makes in the blocks within its reach."""
 
-    rows: np.ndarray  # (K, COLUMN_COUNT), time derivatives of the change of slip, at the event
-    centre: np.ndarray  # (K + 2,), the same for the block of the event alone
+    # (K, COLUMN_COUNT), time derivatives of the change of slip, at the time of the event
+    derivatives: np.ndarray
+    block_change: np.ndarray  # (K + 2,), the same for the block of the event alone
     values: np.ndarray  # (COLUMN_COUNT,), one time derivative of the change, at another time
 
 
@@ -228,8 +229,8 @@ def make_scratch(size: int, order: int) -> Scratch:
         slopes=np.zeros(order + 2),
     )
     difference = Difference(
-        rows=np.zeros((order + 2, COLUMN_COUNT)),
-        centre=np.zeros(order + 4),
+        derivatives=np.zeros((order + 2, COLUMN_COUNT)),
+        block_change=np.zeros(order + 4),
         values=np.zeros(COLUMN_COUNT),
     )
     first, last, stuck_block = np.zeros((3, MAX_EVENTS_PER_STEP), dtype=np.int64)

@@ -11,13 +11,19 @@ from .layer import LayerScene, simulate_layer
 def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
     """Compile the kernels of some schemes, by simulating a small scene with each.
 
-    The name "layer" stands for the elastic layer in the plane.
+    The name "layer" stands for the elastic layer in the plane, in single precision.
     """
     prestress = Prestress(0.5, 0.5)
     for scheme in schemes:
         if scheme == "layer":
             small_layer = LayerScene(
-                "displacement", 0.5, prestress, weakening=1.0, duration=1.0, cells=4
+                "displacement",
+                0.5,
+                prestress,
+                weakening=1.0,
+                duration=1.0,
+                cells=4,
+                precision="single",
             )
             simulate_layer(small_layer)
         else:

@@ -8,8 +8,8 @@ slip or slip rate of a block reaches the kink. Each time is therefore a root of 
 are found by Newton's method.
 
 All times are counted from the start of the step: ``now`` is the time from which on events are
-searched for, and ``h`` is the end of the step. ``top`` is the order of the highest time derivative
-of slip that the step has computed.
+searched for, and ``step_end`` is the end of the step. ``top`` is the order of the highest time
+derivative of slip that the step has computed.
 """
 
 import math
@@ -19,8 +19,8 @@ import numpy as np
 from .arrays import ACCELERATION, EVENT_REACH, SLIP, VELOCITY, Event
 from .jit import inlined_kernel, kernel_function
 
-# The factors 1/j of Taylor polynomials that are written in derivatives; 0 for j = 0.
-RECIPROCALS = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * EVENT_REACH))
+# Entry k is 1/k, a factor of Taylor polynomials that are written in derivatives; entry 0 is 0.
+INVERSE_INTEGERS = np.append(0.0, 1.0 / np.arange(1.0, 2.0 * EVENT_REACH))
 # A stress is evaluated this number of times in a step, and also where its slope changes sign.
 STRESS_EVALUATIONS = 4
 # At the instant of a stick, rounding of the root can make the velocity negative, but not by more
@@ -31,11 +31,11 @@ MAX_NEWTON_STEPS = 100
 
 
 @kernel_function()
-def evaluate_polynomial(coefficients, degree, h):
-    """Return the value at h of a polynomial, whose coefficients begin with the lowest power."""
+def evaluate_polynomial(coefficients, degree, x):
+    """Return the value at x of a polynomial, whose coefficients begin with the lowest power."""
     value = coefficients[degree]
     for k in range(degree - 1, -1, -1):
-        value = coefficients[k] + h * value
+        value = coefficients[k] + x * value
     return value
 
 
@@ -109,22 +109,33 @@ def find_threshold_crossing(coefficients, slopes, degree, lower, upper):
 
 
 @kernel_function(inline=True)
-def predict_release(medium, motion, prediction, block, now, h, top):
+def elastic_force(medium, motion, block):
+    """Return the elastic force of its neighbours on a block, with the slip by events of the step.
+
+    The stored strain is that of the start of the step, and does not contain this slip yet.
+    """
+    strain, event_slip = motion.strain, motion.event_slip
+    at_step_start = (strain[block] - strain[block - 1]) / medium.dx
+    added_on_left = event_slip[block] - event_slip[block - 1]
+    added_on_right = event_slip[block + 1] - event_slip[block]
+    return at_step_start + medium.inverse_dx2 * (added_on_right - added_on_left)
+
+
+@kernel_function(inline=True)
+def predict_release(medium, motion, prediction, block, now, step_end, top):
     """Return the time at which a stuck block is released, and its stress at the time ``now``.
 
-    The time is inf if the block is not released until ``h``, the end of the step.
+    The time is inf if the block is not released until ``step_end``, the end of the step.
     """
-    w, offset = motion.w, motion.offset
-    strain = motion.strain
-    # The stress minus 1 is a polynomial of the time since the step began. First its constant term,
-    # the stress at the start of the step with the changes of slip by earlier events (offset).
-    curvature = (offset[block + 1] - offset[block]) - (offset[block] - offset[block - 1])
-    slip = w[SLIP, block] + offset[block]
-    elastic = (strain[block] - strain[block - 1]) / medium.dx + medium.inverse_dx2 * curvature
-    coefficients = prediction.coefficients
+    w, coefficients = motion.derivatives, prediction.coefficients
+    # The stress minus 1 is a polynomial of the time since the step began. Its constant term is the
+    # stress at the start of the step, with the slip that earlier events of the step have added.
+    slip = w[SLIP, block] + motion.event_slip[block]
+    elastic = elastic_force(medium, motion, block)
     coefficients[0] = elastic - medium.leaf_stiffness * slip + motion.tau[block] - 1.0
-    # The block is at rest, so that the other terms come from the time derivatives of the slip of
-    # its two neighbours.
+    # The block is at rest, so that only the motion of its two neighbours changes its stress. The
+    # coefficient of power k is derivative k of the stress, divided by k!. In the loop,
+    # ``inverse_factorial`` is 1/(k - 1)! and then 1/k!.
     inverse_factorial, damping = 1.0, 0.0
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
@@ -132,28 +143,28 @@ def predict_release(medium, motion, prediction, block, now, h, top):
         neighbours = w[k, block - 1] + w[k, block + 1]
         # The damping force contains the velocity, whose derivative k - 1 is derivative k of slip.
         coefficients[k - 1] += inverse_factorial * damping * neighbours
-        inverse_factorial *= RECIPROCALS[k]
+        inverse_factorial *= INVERSE_INTEGERS[k]
         coefficients[k] = inverse_factorial * medium.inverse_dx2 * neighbours
-    above_threshold = evaluate_polynomial(coefficients, top, now)
-    if above_threshold >= 0.0:
-        return now, above_threshold + 1.0
+    excess_stress = evaluate_polynomial(coefficients, top, now)
+    if excess_stress >= 0.0:
+        return now, excess_stress + 1.0
     # The positive terms alone bound the rise of the stress. Most searches for a root end here.
     largest_rise = 0.0
     for k in range(top, 0, -1):
-        largest_rise = h * (max(coefficients[k], 0.0) + largest_rise)
+        largest_rise = step_end * (max(coefficients[k], 0.0) + largest_rise)
     if coefficients[0] + largest_rise < 0.0:
-        return math.inf, above_threshold + 1.0
-    time = find_threshold_crossing(coefficients, prediction.slopes, top, now, h)
-    return time, above_threshold + 1.0
+        return math.inf, excess_stress + 1.0
+    time = find_threshold_crossing(coefficients, prediction.slopes, top, now, step_end)
+    return time, excess_stress + 1.0
 
 
 @kernel_function(inline=True)
-def predict_releases(medium, motion, segments, prediction, first, last, now, h):
-    """Predict the releases of the blocks first..last-1 from the time ``now`` until ``h``.
+def predict_releases(medium, motion, segments, prediction, first, last, now, step_end):
+    """Predict the releases of the blocks first..last-1 from the time ``now`` until ``step_end``.
 
     Only the neighbours of sliding segments can be released. Returns their lowest stress at ``now``.
     """
-    top = motion.w.shape[0] - 1
+    top = motion.derivatives.shape[0] - 1
     lowest_stress = math.inf
     for r in range(segments.count.n):
         for side in range(2):
@@ -162,7 +173,7 @@ def predict_releases(medium, motion, segments, prediction, first, last, now, h):
             is_mirror_image = medium.is_mirrored and block == 0
             if not first <= block < last or is_mirror_image:
                 continue
-            release, stress = predict_release(medium, motion, prediction, block, now, h, top)
+            release, stress = predict_release(medium, motion, prediction, block, now, step_end, top)
             prediction.release_time[block] = release
             lowest_stress = min(lowest_stress, stress)
     return lowest_stress
@@ -190,8 +201,9 @@ def find_next_event(segments, prediction):
 @kernel_function(inline=True)
 def interacts_with_mirror_image(medium, block):
     """Return True if an event of a block interacts with that of the block's mirror image."""
-    # Block 1 on the axis is its own mirror image, and does not interact with itself. The slopes of
-    # friction of the mirror images, however, are not stored, so with a kink of the law it counts.
+    # Block 1 on the axis is its own mirror image, so that it has no second event. If the law has a
+    # kink, however, its event counts as well: it would change mirror images, whose slopes of
+    # friction are not stored.
     nearest = 2 if medium.law_kink is None else 1
     return medium.is_mirrored and nearest <= block <= 1 + EVENT_REACH
 
@@ -204,17 +216,17 @@ def has_simultaneous_event(segments, prediction, medium, block, latest):
     """
     # Two events interact if the blocks that they change overlap or are neighbours.
     near = 2 * EVENT_REACH + 1
-    interacting = 1 if interacts_with_mirror_image(medium, block) else 0
+    is_found = interacts_with_mirror_image(medium, block)
     # Releases of the two neighbours of each segment.
     for r in range(segments.count.n):
         for neighbour in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):
             is_near = 0 < abs(neighbour - block) <= near
-            interacting += is_near and prediction.release_time[neighbour] <= latest
+            is_found |= is_near and prediction.release_time[neighbour] <= latest
     # Sticks and kinks of the law.
     for q in range(prediction.event_count.n):
         is_near = 0 < abs(prediction.event_block[q] - block) <= near
-        interacting += is_near and prediction.event_time[q] <= latest
-    return interacting > 0
+        is_found |= is_near and prediction.event_time[q] <= latest
+    return is_found
 
 
 @kernel_function()
@@ -233,131 +245,146 @@ def list_due_releases(segments, prediction, latest, due):
 
 
 @kernel_function()
-def predict_stick(coefficients, slopes, degree, velocity_after, now, h):
-    """Return the time from ``now`` to ``h`` at which a velocity falls below 0, inf if it does not.
+def predict_stick(coefficients, slopes, degree, end_velocity, now, step_end):
+    """Return the time from ``now`` to ``step_end`` at which a block sticks, inf if it does not.
 
-    coefficients : those of the velocity, a polynomial of the time since the step began
+    It sticks when its velocity, a polynomial of the time since the step began, falls below 0.
+
+    coefficients : those of the velocity
     slopes : scratch for the coefficients of its slope
-    velocity_after : velocity at the time h, the end of the step
+    end_velocity : velocity at the time ``step_end``
     """
     velocity_now = evaluate_polynomial(coefficients, degree, now)
-    if velocity_after > ROUNDING_TOLERANCE:
-        # The velocity may be negative for a part of the step, around its minimum.
-        turn = find_turning_point(coefficients, slopes, degree, now, h)
+    if end_velocity > ROUNDING_TOLERANCE:
+        # The block sticks only if the velocity has a negative minimum within the step.
+        turn = find_turning_point(coefficients, slopes, degree, now, step_end)
         if evaluate_polynomial(coefficients, degree, turn) >= -ROUNDING_TOLERANCE:
             return math.inf
         return find_crossing(coefficients, degree, now, turn)
-    if velocity_after >= 0.0:
+    if end_velocity >= 0.0:
         # The velocity at the end is 0 apart from rounding. If it is 0 now as well, the block was
         # released just before the end of the step, and does not stick.
         if abs(velocity_now) <= ROUNDING_TOLERANCE:
             return math.inf
-        return find_crossing(coefficients, degree, now, h)
-    # From here on the velocity at the end is negative.
-    if velocity_now <= ROUNDING_TOLERANCE:
-        turn = find_turning_point(coefficients, slopes, degree, now, h)
-        if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
-            # The block is released at this instant. The velocity is 0 now and rises to a maximum,
-            # after which it falls to 0 again.
-            return find_crossing(coefficients, degree, turn, h)
-    return find_crossing(coefficients, degree, now, h) if velocity_now > 0.0 else now
+        return find_crossing(coefficients, degree, now, step_end)
+    # From here on the velocity at the end is negative, so that the block sticks.
+    if velocity_now > ROUNDING_TOLERANCE:
+        return find_crossing(coefficients, degree, now, step_end)
+    # The velocity is 0 now, apart from rounding. If it rises, the block is released now, and sticks
+    # after the velocity has passed its maximum.
+    turn = find_turning_point(coefficients, slopes, degree, now, step_end)
+    if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
+        return find_crossing(coefficients, degree, turn, step_end)
+    # If it falls, the block sticks as soon as the velocity is not positive.
+    return find_crossing(coefficients, degree, now, step_end) if velocity_now > 0.0 else now
 
 
 @kernel_function(inline=True)
-def predict_sticks(motion, prediction, first, last, suspects, now, h, top):
-    """Predict the sticks of the blocks first..last-1 from the time ``now`` until ``h``.
+def add_predicted_event(prediction, block, time, is_law_kink):
+    """Append an event of a sliding block to the list: a kink of its law, or else a stick."""
+    n = prediction.event_count.n
+    prediction.event_block[n], prediction.event_time[n] = block, time
+    prediction.is_law_kink[n] = is_law_kink
+    prediction.event_count.n = n + 1
 
-    Returns False if a velocity is not finite at h, the end of the step.
 
-    suspects : number of blocks that may stick; when all have been examined, the search ends
+@kernel_function(inline=True)
+def predict_sticks(motion, prediction, first, last, may_stick_count, now, step_end, top):
+    """Predict the sticks of the blocks first..last-1 from the time ``now`` until ``step_end``.
+
+    Returns False if a velocity is not finite at the end of the step.
+
+    may_stick_count : number of blocks that may stick; the search ends after them
     top : order of the highest time derivative of slip
     """
-    w, velocity = motion.w, motion.velocity
+    w, end_velocity = motion.derivatives, motion.end_velocity
     coefficients = prediction.coefficients
     for i in range(first, last):
-        # A velocity that is negative only for a part of the step has a tangent at its start that is
-        # negative at h.
-        if velocity[i] >= 0.0 and w[VELOCITY, i] + h * w[ACCELERATION, i] >= 0.0:
+        # A block may stick if its velocity is negative at the end of the step, or if the tangent of
+        # its velocity is. A velocity that is negative only in between has such a tangent.
+        tangent_after = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
+        if end_velocity[i] >= 0.0 and tangent_after >= 0.0:
             continue
-        if not math.isfinite(velocity[i]):
+        if not math.isfinite(end_velocity[i]):
             return False
-        suspects -= 1
+        may_stick_count -= 1
         # The velocity as a polynomial of the time since the step began.
         factorial = 1.0
         for k in range(top):
             factorial *= max(k, 1)
             coefficients[k] = w[k + 1, i] / factorial
-        root = predict_stick(coefficients, prediction.slopes, top - 1, velocity[i], now, h)
-        if root < math.inf:
-            n = prediction.event_count.n
-            prediction.event_block[n], prediction.event_time[n] = i, root
-            prediction.is_law_kink[n] = False
-            prediction.event_count.n = n + 1
-        if suspects == 0:
+        stick_time = predict_stick(
+            coefficients, prediction.slopes, top - 1, end_velocity[i], now, step_end
+        )
+        if stick_time < math.inf:
+            add_predicted_event(prediction, i, stick_time, False)
+        if may_stick_count == 0:
             break
     return True
 
 
 @kernel_function()
-def predict_law_kink(coefficients, slopes, degree, now, h):
-    """Return the time from ``now`` to ``h`` at which a polynomial reaches 0, inf if it does not.
+def predict_law_kink(coefficients, slopes, degree, now, step_end):
+    """Return the time from ``now`` to ``step_end`` at which a block reaches the kink of its law.
 
-    The polynomial is the slip or slip rate of a block minus its value at the kink of the law. It
-    is negative before the kink. ``slopes`` is scratch for the coefficients of its slope.
+    The result is inf if it does not reach the kink.
+
+    coefficients : those of a polynomial of time that rises to 0 at the kink: the slip or slip rate
+        minus its value at the kink, or the opposite for a block beyond the kink
+    slopes : scratch for the coefficients of its slope
     """
-    search_start = now
-    if evaluate_polynomial(coefficients, degree, now) >= -ROUNDING_TOLERANCE:
-        turn = find_turning_point(coefficients, slopes, degree, now, h)
-        if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
-            return now
-        # The block leaves the kink at this instant. It can return only after the turning point.
-        search_start = turn
-    return find_threshold_crossing(coefficients, slopes, degree, search_start, h)
+    if evaluate_polynomial(coefficients, degree, now) < -ROUNDING_TOLERANCE:
+        return find_threshold_crossing(coefficients, slopes, degree, now, step_end)
+    # The block is at the kink now. If the polynomial rises, the block passes it at this instant.
+    turn = find_turning_point(coefficients, slopes, degree, now, step_end)
+    if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
+        return now
+    # If the polynomial falls, the block can return to the kink only after the turning point.
+    return find_threshold_crossing(coefficients, slopes, degree, turn, step_end)
 
 
 @kernel_function(inline=True)
-def predict_law_kinks(motion, law_kink, prediction, first, last, now, h, top):
-    """Predict when the blocks first..last-1 reach the kink of their law, from ``now`` until ``h``.
+def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, top):
+    """Predict when the blocks first..last-1 reach the kink of their law.
 
-    The polynomial that is searched for roots is the slip or slip rate minus its value at the kink.
-    It is multiplied by -1 for a block that is beyond the kink, so that it rises to 0 in either
-    direction.
+    The search begins at ``now`` and ends at ``step_end``, the end of the step. Friction decreases
+    with its argument, the slip or the slip rate, only before the kink.
 
     top : order of the highest time derivative of slip
     """
     if law_kink is not None:
-        w, coefficients = motion.w, prediction.coefficients
-        degree = top - law_kink.rate
+        w, coefficients = motion.derivatives, prediction.coefficients
+        degree = top - law_kink.argument_row
         for i in range(first, last):
-            # Friction decreases only before the kink.
-            sign = 1.0 if motion.weakening_slope[i] > 0.0 else -1.0
-            # Leave out blocks that cannot reach the kink, for which ``reach`` is negative. Slip
-            # only grows: every block before a kink in slip is examined, and none beyond it.
-            reach = sign
-            if law_kink.rate == 1:
-                # The largest value of the polynomial at the end of the step, by the slip rate or by
-                # its tangent. A slip rate that passes the kink only for a part of the step shows it
-                # in its tangent.
-                tangent_after = w[VELOCITY, i] + h * w[ACCELERATION, i]
-                farthest = max(sign * motion.velocity[i], sign * tangent_after)
-                reach = farthest - sign * law_kink.end
-            if reach < 0.0:
+            # The argument reaches the kink from below, or from above if the block is beyond it.
+            is_before_kink = motion.weakening_slope[i] > 0.0
+            sign = 1.0 if is_before_kink else -1.0
+            if law_kink.argument_row == SLIP:
+                # Slip only grows, so that it does not come back to the kink.
+                is_out_of_reach = not is_before_kink
+            else:
+                # A slip rate that passes the kink only for a part of the step has a tangent at the
+                # start of the step that passes it.
+                tangent_after = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
+                farthest = max(sign * motion.end_velocity[i], sign * tangent_after)
+                is_out_of_reach = farthest < sign * law_kink.argument_at_kink
+            if is_out_of_reach:
                 continue
+            # The Taylor polynomial of the argument minus its value at the kink, times the sign, so
+            # that it rises to 0 in either case.
             factor = sign
             for k in range(degree + 1):
-                coefficients[k] = factor * w[k + law_kink.rate, i]
-                factor *= RECIPROCALS[k + 1]
-            # In a law of slip rate, slip_at_release is 0. Only the row of slip has an offset.
-            value_at_kink = motion.slip_at_release[i] + law_kink.end
-            coefficients[0] -= sign * (
-                value_at_kink if law_kink.rate else value_at_kink - motion.offset[i]
-            )
-            root = predict_law_kink(coefficients, prediction.slopes, degree, now, h)
-            if root < math.inf:
-                n = prediction.event_count.n
-                prediction.event_block[n], prediction.event_time[n] = i, root
-                prediction.is_law_kink[n] = True
-                prediction.event_count.n = n + 1
+                coefficients[k] = factor * w[k + law_kink.argument_row, i]
+                factor *= INVERSE_INTEGERS[k + 1]
+            # Slip is counted from the release. In a law of slip rate, slip_at_release is 0.
+            argument_at_kink = motion.slip_at_release[i] + law_kink.argument_at_kink
+            if law_kink.argument_row == SLIP:
+                # The table of derivatives does not contain the slip by events of the step yet.
+                argument_at_kink -= motion.event_slip[i]
+            coefficients[0] -= sign * argument_at_kink
+            time_of_kink = predict_law_kink(coefficients, prediction.slopes, degree, now, step_end)
+            if time_of_kink < math.inf:
+                add_predicted_event(prediction, i, time_of_kink, True)
 
 
 @kernel_function(inline=True)

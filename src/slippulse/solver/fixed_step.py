@@ -71,13 +71,14 @@ friction_by_law_number = combine_laws(LAWS)
 def compute_forces(medium, motion, sliding, history, t, first, last):
     """Compute the forces on blocks first..last-1, and release those that reach the threshold.
 
-    The forces are written into the row ACCELERATION of w. Returns the number of sliding blocks.
+    The forces are written into the row ACCELERATION of ``motion.derivatives``. Returns the number
+    of sliding blocks.
 
     sliding : mask of the blocks that slide
     t : time at the start of the step
     """
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    force, tau = motion.w[ACCELERATION], motion.tau
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    force, tau = motion.derivatives[ACCELERATION], motion.tau
     inverse_dx2, damping = medium.inverse_dx2, medium.damping
     tally = history.tally
     sliding_count, lowest_stress = 0, tally.min_stuck_stress
@@ -114,14 +115,15 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 
     A block whose velocity would be negative sticks.
 
-    Returns the largest velocity (inf if one is not finite), and the work against friction. Work
-    against friction alpha v is left out, because it is a part of `viscous_loss`.
+    Returns the largest velocity (inf if one is not finite), and the work against friction. It is
+    friction by a law that is not linear (law_number > 0): the forces already contain linear
+    friction alpha v, whose work is a part of `viscous_loss`.
 
     dt : length of the step
     end : time at its end
     """
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    force, tally = motion.w[ACCELERATION], history.tally
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    force, tally = motion.derivatives[ACCELERATION], history.tally
     fastest = 0.0
     # The sum of friction times mean velocity, which is multiplied by dt and dx at the end.
     friction, work = 0.0, 0.0
@@ -131,7 +133,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
         before = velocity[i]
         if medium.law_number > 0:
             slip_since_release = slip[i] - motion.slip_at_release[i]
-            full_friction = friction_by_law_number(
+            law_friction = friction_by_law_number(
                 medium.law_number,
                 slip_since_release,
                 before,
@@ -139,7 +141,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
                 medium.law_parameter_2,
             )
             # The factor is 0 in the zone without friction, and otherwise 1.
-            friction = motion.law_factor[i] * full_friction
+            friction = motion.law_factor[i] * law_friction
             force[i] -= friction
         after = before + dt * force[i]
         # A block that has a mirror image counts twice.
@@ -150,6 +152,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
             tally.min_velocity = min(tally.min_velocity, after)
             after = 0.0
             sliding[i] = False
+            # Until its next release, the block does not slip.
             motion.slip_at_release[i] = slip[i]
             record_stick(history, i, end)
         else:
@@ -192,6 +195,7 @@ def take_samples(recorder, motion, tally, end):
     end : time at the end of the step
     """
     times, blocks = recorder.times, recorder.blocks
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
         # Within a step, slip changes at the constant velocity that belongs to its end.
@@ -201,8 +205,8 @@ def take_samples(recorder, motion, tally, end):
             # Positions outside the lattice have no block.
             if i < 0:
                 continue
-            recorder.slip[n, p] = motion.w[SLIP, i] - time_to_end * motion.w[VELOCITY, i]
-            recorder.velocity[n, p] = motion.w[VELOCITY, i]
+            recorder.slip[n, p] = slip[i] - time_to_end * velocity[i]
+            recorder.velocity[n, p] = velocity[i]
         tally.samples_taken += 1
 
 
@@ -210,12 +214,14 @@ def take_samples(recorder, motion, tally, end):
 def advance_fixed(medium, motion, sliding, history, recorder, limits):
     """Advance a lattice by the textbook scheme until a limit, and return the reason for stopping.
 
-    The rows of ``motion.w`` are slip, velocity and force. ``sliding`` is a mask of the blocks.
+    The rows of ``motion.derivatives`` are slip, velocity and force. ``sliding`` is a mask of the
+    blocks.
     """
     size, tally = motion.tau.shape[0], history.tally
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    # The stress of a block at rest changes only next to blocks that moved in the last step. The
-    # first step of a call visits all blocks, since the lattice may have been extended.
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    # A step visits only the blocks first..last-1: those that moved in the last step, and their
+    # neighbours at rest, whose stress has changed. The first step of a call visits all blocks,
+    # since the lattice may have been extended.
     first, last = 1, size - 1
     for _ in range(limits.max_steps):
         start = tally.time
@@ -229,6 +235,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         sliding_count = compute_forces(medium, motion, sliding, history, start, first, last)
         if sliding_count == 0:
             return ALL_STUCK
+        # From here on, only the range of the sliding blocks.
         first, last = find_sliding_range(sliding, first, last)
         fastest, work = advance_blocks(medium, motion, sliding, history, dt, end, first, last)
         if fastest == math.inf:
@@ -237,6 +244,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         if medium.is_mirrored:
             velocity[0] = velocity[2]
         tally.viscous_loss += viscous_loss(medium, velocity, dt, first, last)
+        # The range that the next step visits.
         first, last = max(first - 1, 1), min(last + 1, size - 1)
         tally.steps += 1
         tally.block_updates += sliding_count
@@ -274,7 +282,10 @@ def solve_by_scheme(
 
 
 def has_locked_front(solution: Solution) -> bool:
-    """Return True if a front of the textbook scheme is locked to a fraction of dx/dt."""
+    """Return True if a front of the textbook scheme is locked to a fraction of dx/dt.
+
+    In this case the numbers of steps between its releases repeat in a short cycle.
+    """
     step = solution.numbers["end_time"] / max(solution.numbers["steps"], 1)
     for side in (-1.0, 1.0):
         is_released = (side * solution.x >= 0.0) & np.isfinite(solution.release_time)

@@ -32,7 +32,9 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
     localised : True for the Taylor step, False for the textbook scheme
     """
     traits = friction.traits
+    # The laws that are linear in slip velocity, or 0, are those that the exact solution covers.
     is_linear = "continuum" in friction.schemes
+    # These laws have constants of their own in the kernels. The Taylor step solves no other laws.
     if localised or is_linear:
         return FrictionConstants(
             alpha=traits.linear_rate,
@@ -41,6 +43,7 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
             law_parameter_2=0.0,
             law_kink=traits.law_kink,
         )
+    # The textbook scheme calls the function of any other law.
     parameter_1, parameter_2 = friction.kernel_parameters
     return FrictionConstants(
         alpha=0.0,
@@ -53,37 +56,42 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
 
 @kernel_function()
 def begin_weakening(motion, law_kink, block):
-    """Start the weakening of a block that is released, and return its friction."""
+    """Start the weakening of a block that is released, and return its friction.
+
+    law_kink : constants of a piecewise linear law; None for other laws, which need no start
+    """
     if law_kink is not None:
-        if law_kink.rate == 0:
-            motion.slip_at_release[block] = motion.w[SLIP, block] + motion.offset[block]
-        motion.weakening_slope[block] = motion.law_factor[block] * law_kink.fall
-        # The block has not slipped since its release, and its slip rate is 0.
-        return law_kink.lowest + motion.weakening_slope[block] * law_kink.end
+        weakening_slope = motion.law_factor[block] * law_kink.weakening_slope
+        motion.weakening_slope[block] = weakening_slope
+        if law_kink.argument_row == SLIP:
+            # The slip at the start of the step, plus the slip by earlier events of the step.
+            slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
+            motion.slip_at_release[block] = slip
+        # The argument of the law, the slip since the release or the slip rate, is 0 now.
+        return law_kink.friction_beyond + weakening_slope * law_kink.argument_at_kink
     return 0.0
 
 
 @kernel_function(inline=True)
 def friction_of_block(motion, law_kink, block, argument):
-    """Return the piecewise linear friction of a block at a given argument of its law.
+    """Return the piecewise linear friction of a block. Beyond the kink its slope is 0.
 
-    The argument is the slip or the slip rate (see `LawKink`), and a slip is counted from t = 0. For
-    a law of slip rate, ``slip_at_release`` stays 0.
+    argument : slip of the block since t = 0, or its slip rate for a law of slip rate, in which
+        ``slip_at_release`` is always 0
     """
-    return law_kink.lowest + motion.weakening_slope[block] * (
-        motion.slip_at_release[block] + law_kink.end - argument
-    )
+    argument_at_kink = motion.slip_at_release[block] + law_kink.argument_at_kink
+    return law_kink.friction_beyond + motion.weakening_slope[block] * (argument_at_kink - argument)
 
 
 @kernel_function()
 def friction_at_stick(motion, law_kink, block):
-    """Return the friction of a block when it sticks.
+    """Return the friction of a block at the instant at which it sticks.
 
-    A block sticks at slip rate 0, where every law of slip rate has the kinetic value, 0.
+    At slip rate 0, friction is 0 by every law that does not depend on slip.
     """
-    if law_kink is not None and law_kink.rate == 0:
-        # The slip at the start of the step, plus its change since then.
-        slip = motion.w[SLIP, block] + motion.offset[block]
+    if law_kink is not None and law_kink.argument_row == SLIP:
+        # The slip at the start of the step, plus the slip by events of the step.
+        slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
         return friction_of_block(motion, law_kink, block, slip)
     return 0.0
 
@@ -92,32 +100,34 @@ def friction_at_stick(motion, law_kink, block):
 def switch_weakening(motion, law_kink, block):
     """Stop the weakening of a block that passes the kink, or start it again on the way back."""
     if law_kink is not None:
-        # The slope is either 0 or ``fall``, and takes the other value.
-        motion.weakening_slope[block] = law_kink.fall - motion.weakening_slope[block]
+        # The slope of the block is either 0 or that of the law, and takes the other value.
+        motion.weakening_slope[block] = law_kink.weakening_slope - motion.weakening_slope[block]
 
 
 @kernel_function(inline=True)
-def add_weakening(w, k, first, last, column, motion, law_kink):
-    """Add the decrease of piecewise linear friction to time derivative k of slip.
+def add_weakening(w, k, first, last, block_of_column_0, motion, law_kink):
+    """Add the contribution of piecewise linear friction to time derivative k of slip.
 
-    Friction falls by the slope times its argument, the slip or the slip rate (see `LawKink`).
-    Derivative k of slip therefore contains the slope times derivative k - 2 of the argument. This
-    is row k - 2 of ``w`` if the argument is the slip, and row k - 1 if it is the slip rate.
+    Friction falls by the slope times its argument, the slip or the slip rate. It is a part of the
+    acceleration, so that derivative k of slip contains the slope times derivative k - 2 of the
+    argument. This is derivative k - 2 of slip, or k - 1 if the argument is the slip rate.
 
-    w : time derivatives of slip; its column i is block i + ``column`` of the lattice
+    w : time derivatives of slip (rows) of some blocks; column i is block i + block_of_column_0
     """
     if law_kink is not None:
         for i in block_range(first, last):
-            w[k, i] += motion.weakening_slope[i + column] * w[k - 2 + law_kink.rate, i]
+            derivative_of_argument = w[k - 2 + law_kink.argument_row, i]
+            w[k, i] += motion.weakening_slope[i + block_of_column_0] * derivative_of_argument
 
 
 @kernel_function(inline=True)
 def subtract_friction(motion, first, last, law_kink):
     """Subtract piecewise linear friction from the accelerations of blocks first..last-1."""
     if law_kink is not None:
-        w = motion.w
+        w = motion.derivatives
         for i in block_range(first, last):
-            w[ACCELERATION, i] -= friction_of_block(motion, law_kink, i, w[law_kink.rate, i])
+            argument = w[law_kink.argument_row, i]
+            w[ACCELERATION, i] -= friction_of_block(motion, law_kink, i, argument)
 
 
 @kernel_function(inline=True)
@@ -126,19 +136,20 @@ def friction_power(medium, motion, segments, law_kink):
     # Sums over blocks of friction times velocity, and of the time derivative of this product.
     power, power_slope = 0.0, 0.0
     if law_kink is not None:
-        w, weakening_slope = motion.w, motion.weakening_slope
+        w, weakening_slope = motion.derivatives, motion.weakening_slope
         for r in range(segments.count.n):
             for i in block_range(segments.edges[2 * r], segments.edges[2 * r + 1]):
                 # A block that has a mirror image counts twice.
                 weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
-                friction = friction_of_block(motion, law_kink, i, w[law_kink.rate, i])
+                # The argument of friction is slip or slip rate, and the next row its derivative.
+                argument = w[law_kink.argument_row, i]
+                argument_rate = w[law_kink.argument_row + 1, i]
+                friction = friction_of_block(motion, law_kink, i, argument)
+                friction_decrease_rate = weakening_slope[i] * argument_rate
                 power += weight * friction * w[VELOCITY, i]
-                # Friction changes at the rate of minus the slope times the argument's derivative.
-                power_slope_of_block = (
-                    friction * w[ACCELERATION, i]
-                    - weakening_slope[i] * w[law_kink.rate + 1, i] * w[VELOCITY, i]
+                power_slope += weight * (
+                    friction * w[ACCELERATION, i] - friction_decrease_rate * w[VELOCITY, i]
                 )
-                power_slope += weight * power_slope_of_block
     return medium.dx * power, medium.dx * power_slope
 
 

@@ -72,7 +72,8 @@ def writable_cache() -> str:
     is_usable = not _write_problem(substitute)
     consequence = f"they go to {substitute}" if is_usable else "each process compiles its own"
     remedy = "to avoid this, set SLIPPULSE_CACHE to a folder that can be written"
-    warnings.warn(f"compiled kernels: {usual}: {problem}; {consequence}; {remedy}", stacklevel=2)
+    cannot_write = f"compiled kernels cannot be written to {usual}: {problem}"
+    warnings.warn(f"{cannot_write}; {consequence}; {remedy}", stacklevel=2)
     return str(substitute) if is_usable else ""
 
 

@@ -42,7 +42,7 @@ class Lattice:
       change the contents of all of them except medium.
     - tally is the part of the history with the totals of the run.
     - largest_force is the bound of `arrays.Limits`.
-    - sampled has the numbers of the sampled blocks.
+    - sampled_numbers has the numbers of the sampled blocks.
     """
 
     localised = True
@@ -50,10 +50,13 @@ class Lattice:
     def __init__(self, scene: Scene, samples: Samples | None, beta: float) -> None:
         assert self.localised == (scene.scheme == "localised")
         self.scene, self.samples = scene, samples
+        # A caller can lower this number, to look at the lattice after fewer steps.
         self.call_steps = MAX_CALL_STEPS
         self.is_mirrored = scene.symmetric
         self.medium = self._make_medium(beta)
         self.first_block = 0
+        # A Taylor step of order n needs slip and its time derivatives 1 to n + 1. The other schemes
+        # need slip, velocity and force.
         derivatives = scene.order + 2 if self.localised else 3
         self.motion = arrays.make_motion(derivatives, 0)
         self.tally = arrays.new_record(arrays.TALLY_DTYPE)
@@ -86,8 +89,9 @@ class Lattice:
         # mirrored.
         in_spacings = samples.positions / self.scene.dx
         numbers = (np.sign(in_spacings) * np.floor(np.abs(in_spacings) + 0.5)).astype(np.int64)
-        self.sampled = np.abs(numbers) if self.is_mirrored else numbers
+        self.sampled_numbers = np.abs(numbers) if self.is_mirrored else numbers
         slip, velocity = np.zeros((2, samples.times.size, samples.positions.size))
+        # `_extend` replaces the numbers of the blocks by their positions in the arrays.
         self.recorder = arrays.Recorder(samples.times.copy(), numbers, slip, velocity)
 
     def _cover_nucleation(self) -> None:
@@ -126,11 +130,15 @@ class Lattice:
         self._extend(0 if self.is_mirrored else self.size, self.size)
 
     def _extend(self, left: int, right: int) -> None:
-        """Add ``left`` blocks at rest on the left, and ``right`` or a few more on the right."""
+        """Add ``left`` blocks at rest on the left, and ``right`` or some more on the right.
+
+        All arrays are replaced by longer ones.
+        """
         # The old blocks have these positions in the new arrays.
         old_blocks = slice(left, left + self.size)
         size = old_blocks.stop + right
-        # Use the smallest length whose rows begin at different positions in their pages.
+        # Add blocks until rows of this length begin at different positions in the pages of memory,
+        # which is faster (see PAGE_BLOCKS).
         size += (PAGE_OFFSET - size) % PAGE_BLOCKS
         self.first_block -= left
         self._extend_motion(old_blocks, size)
@@ -141,7 +149,7 @@ class Lattice:
         self.history = arrays.History(release_time, stick_time, self.tally)
         # Array positions have changed by the number of blocks on the left.
         self.tally.first_stuck_block += left
-        sampled_blocks = self.sampled - self.first_block
+        sampled_blocks = self.sampled_numbers - self.first_block
         is_outside = (sampled_blocks < 1) | (sampled_blocks > size - 2)
         self.recorder = self.recorder._replace(blocks=np.where(is_outside, -1, sampled_blocks))
         self.scratch = arrays.make_scratch(size, self.scene.order)
@@ -152,7 +160,7 @@ class Lattice:
         old_blocks : array positions of the present blocks in the new arrays
         """
         old_motion = self.motion
-        derivative_count = old_motion.w.shape[0]
+        derivative_count = old_motion.derivatives.shape[0]
         self.motion = arrays.make_motion(derivative_count, size)
         for new_array, old_array in zip(self.motion, old_motion, strict=True):
             new_array[..., old_blocks] = old_array
@@ -172,9 +180,11 @@ class Lattice:
     def _bound_force(self) -> None:
         """Set the bound on the force that drives a block, from its pre-stress and friction."""
         traits = self.scene.friction.traits
-        # If friction weakens with slip rate without a limit, velocity can grow by this factor.
+        # If friction is alpha v with a negative alpha (the linear rate), velocity grows
+        # exponentially, during the run by up to this factor.
         exponent = max(-traits.linear_rate, 0.0) * self.scene.duration
         growth = float(np.exp(min(exponent, MAX_GROWTH_EXPONENT)))
+        # Friction that drives slip adds up to ``max_drive`` to the pre-stress.
         largest_prestress = float(np.abs(self.motion.tau).max())
         self.largest_force = growth * (largest_prestress + traits.max_drive)
 
@@ -209,7 +219,10 @@ class Lattice:
                 progress(float(min(1.0, self.tally.time / self.scene.duration)))
 
     def _limits_of_call(self) -> arrays.Limits:
-        """Return the limits of the next call of the kernel."""
+        """Return the limits of the next call of the kernel.
+
+        A call ends after some updates of single blocks, so that Python can report the progress.
+        """
         scene = self.scene
         updates_per_step = np.count_nonzero(self.sliding) if self.localised else self.size
         steps = max(MAX_CALL_UPDATES / max(updates_per_step, 1), MIN_CALL_STEPS)

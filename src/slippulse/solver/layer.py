@@ -22,7 +22,7 @@ scheme conserves a discrete energy, so the energy that friction dissipates is ex
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,6 +37,8 @@ MAX_DAMPING_RATIO = 0.11
 # On a grid, small precursors run ahead of the compressional wave. This number of cells is kept for
 # them.
 PRECURSOR_CELLS = 32
+# Number types of the velocities and stresses.
+PRECISIONS: dict[str, Any] = {"double": np.float64, "single": np.float32}
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,10 @@ class LayerScene:
     trail: float = math.inf
     # Damping: beta times its rate is added to each stress, as to the elastic force in `Scene`.
     beta: float = 0.0
+    # "single" takes less than half the time of "double". Times and slips of pulses then differ by
+    # some 1e-6, and slip at points that stick and slide many times by up to 1 %. Both differences
+    # are much smaller than the error of the grid.
+    precision: str = "double"
 
     def __post_init__(self) -> None:
         check_choice("boundary", self.boundary, ("displacement", "stress"))
@@ -78,6 +84,7 @@ class LayerScene:
         allowed = "a symmetric scene, if the trail is finite"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
         check_choice("top", self.top, ("held", "free"))
+        check_choice("precision", self.precision, tuple(PRECISIONS))
 
     @property
     def slip_scale(self) -> float:
@@ -88,6 +95,11 @@ class LayerScene:
     def symmetric(self) -> bool:
         """True if it is enough to solve the half x >= 0."""
         return self.prestress.symmetric and self.coupling == 0.0
+
+    @property
+    def number_type(self) -> Any:
+        """Number type of the velocities and stresses."""
+        return PRECISIONS[self.precision]
 
 
 @dataclass(frozen=True)
@@ -173,13 +185,17 @@ class Columns(NamedTuple):
 
 @kernel_function()
 def update_stresses(elastic, fields, first, last):
-    """Advance the stresses of columns first..last-1 by one step.
+    """Advance the stresses of columns first..last-1 by one step, from the velocities.
 
-    The equations are the three on the right in the module docstring. Derivatives are replaced by
-    differences between neighbours, and ``ratio`` is the time step divided by their distance.
+        ds_xx/dt = direct dv_x/dx + lateral dv_y/dy     ds_xy/dt = shear (dv_x/dy + dv_y/dx)
+        ds_yy/dt = lateral dv_x/dx + normal dv_y/dy
+
+    Derivatives are replaced by differences between neighbours, and ``ratio`` is the time step
+    divided by their distance.
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
+    # s_xx and s_yy on the rows.
     for j in range(rows + 1):
         direct, lateral = ratio * elastic.direct[j], ratio * elastic.lateral[j]
         normal = ratio * elastic.normal[j]
@@ -195,6 +211,7 @@ def update_stresses(elastic, fields, first, last):
             s_yy[i] += lateral * dvx_dx + normal * dvy_dy
         if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
+    # s_xy, which lies half a cell above row j.
     factor = ratio * elastic.shear
     for j in range(rows):
         low, high = vx[j, first:last], vx[j + 1, first:last]
@@ -208,11 +225,14 @@ def update_stresses(elastic, fields, first, last):
 def update_velocities(elastic, fields, first, last):
     """Advance the velocities of columns first..last-1 by one step, except v_x at the bottom.
 
-    The equations are the two on the left in the module docstring. Derivatives are replaced by
-    differences between neighbours, and ``ratio`` is the time step divided by their distance.
+        dv_x/dt = ds_xx/dx + ds_xy/dy     dv_y/dt = ds_xy/dx + ds_yy/dy
+
+    Derivatives are replaced by differences between neighbours, and ``ratio`` is the time step
+    divided by their distance. Rows from ``moving_rows`` on have a v_x that is held.
     """
     vx, vy, sxx, syy, sxy = fields
     rows, ratio = vy.shape[0], elastic.ratio
+    # v_y, which lies half a cell above row j.
     for j in range(rows):
         left, right = sxy[j, first:last], sxy[j, first + 1 : last + 1]
         low, high = syy[j, first:last], syy[j + 1, first:last]
@@ -221,6 +241,7 @@ def update_velocities(elastic, fields, first, last):
             v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
+    # v_x on the rows above the bottom. A top row that moves has only the s_xy below it.
     for j in range(1, elastic.moving_rows):
         weight_above, weight_below = elastic.above[j], elastic.below[j]
         left, right = sxx[j, first - 1 : last - 1], sxx[j, first:last]
@@ -232,7 +253,11 @@ def update_velocities(elastic, fields, first, last):
 
 @kernel_function()
 def compute_strength(elastic, fields, fault, i):
-    """Return the strength of node i, from its motion since the release and its normal stress."""
+    """Return the strength of node i, from its motion since the release and its normal stress.
+
+    It weakens linearly with the slip since the release. If ``rate`` is not 0, `advance_node` lets
+    the strength depend on slip velocity instead, and keeps it in ``fault.strength``.
+    """
     if fault.nucleus[i]:
         return 0.0
     # Decrease of the strength since the release of the node.
@@ -252,7 +277,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
     """Advance v_x and the slip of node i at the bottom by one step, and add the work done.
 
     A node at rest is released when its load, the shear stress, reaches its strength. It sticks when
-    its velocity falls to 0.
+    its velocity falls to 0. The times of its first release and first stick are recorded.
 
     time : time of the stresses, in the middle of the step of the velocities
     """
@@ -303,7 +328,7 @@ def advance_node(elastic, fields, fault, i, dt, time):
 
 @kernel_function()
 def add_damping(elastic, earlier, fields, total, first, last):
-    """Set the total stresses, which are those of ``fields`` plus their rates times beta.
+    """Set the total stresses, those of ``fields`` plus beta times their rates of change.
 
     earlier : stresses one step before, which are replaced by those of ``fields``
     """
@@ -321,7 +346,11 @@ def add_damping(elastic, earlier, fields, total, first, last):
 
 @kernel_entry
 def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
-    """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach."""
+    """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach.
+
+    damped_fields : the fields, those of the step before, and those with damping in the stresses
+    columns : position of x = 0, and numbers of columns on each side that are advanced
+    """
     fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
@@ -340,7 +369,10 @@ def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
 
 
 def simulate_layer(scene: LayerScene) -> LayerRun:
-    """Simulate a rupture on a grid that is so long that no wave reaches its ends."""
+    """Simulate a rupture on a grid that is so long that no wave reaches its ends.
+
+    The slip and v_x are returned in units of ``slip_scale``, without the outermost columns.
+    """
     h = 1.0 / scene.cells
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
@@ -352,7 +384,8 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     centre = 1 if scene.symmetric else columns_on_right
     x = (np.arange(centre + columns_on_right) - centre) * h
     elastic, fields, fault = layer_at_rest(scene, x, dt / h)
-    # Without a trail, all columns behind the wave are advanced, including those at x < 0.
+    # Columns farther behind the wave than the trail are no longer advanced. If the trail is
+    # infinite, all columns are advanced, including those at x < 0.
     trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation_columns, trail_columns)
     damped = damped_fields(elastic, fields)
@@ -375,7 +408,10 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return the fields that a layer needs for its damping; without damping they are the same."""
+    """Return the fields that a layer needs for its damping: elastic, earlier and total stresses.
+
+    Without damping these stresses are the same, so that the same arrays serve for all three.
+    """
     if elastic.damping == 0.0:
         return DampedFields(fields, fields, fields)
     return DampedFields(fields, with_own_stresses(fields), with_own_stresses(fields))
@@ -410,7 +446,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
 
     ratio : time step divided by the side of a cell
     """
-    # 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
+    # Stiffness of s_yy: 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
     normal = np.ones(scene.cells + 1)
     normal[-1] = 1.0 if scene.top == "held" else 0.0
     # The bottom row has only a value above it, and the top row only one below it. This value counts
@@ -418,23 +454,27 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[0], above[-1] = 2.0, 0.0
     below[0], below[-1] = 0.0, 2.0
+    # Stiffness of a normal stress against strain in the other direction. On a free row, s_yy = 0
+    # makes ``direct``, the stiffness of s_xx, smaller than 1.
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
+    # With these types, the kernel computes in the precision of the fields.
+    number_type = scene.number_type
     return Elastic(
-        ratio=ratio,
-        shear=0.5 * scene.gamma,
+        ratio=number_type(ratio),
+        shear=number_type(0.5 * scene.gamma),
         is_mirrored=scene.symmetric,
         moving_rows=moving_rows,
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
-        damping=scene.beta / (ratio / scene.cells),
-        above=above,
-        below=below,
-        direct=np.where(normal, 1.0, 1.0 - lateral**2),
-        lateral=lateral * normal,
-        normal=normal,
+        damping=number_type(scene.beta / (ratio / scene.cells)),
+        above=above.astype(number_type),
+        below=below.astype(number_type),
+        direct=np.where(normal, 1.0, 1.0 - lateral**2).astype(number_type),
+        lateral=(lateral * normal).astype(number_type),
+        normal=normal.astype(number_type),
     )
 
 
@@ -442,11 +482,11 @@ def _fields_at_rest(scene: LayerScene, size: int) -> Fields:
     """Return velocities and stresses of 0, on rows of ``size`` nodes."""
     on_rows, between_rows = (scene.cells + 1, size), (scene.cells, size)
     return Fields(
-        vx=np.zeros(on_rows),
-        vy=np.zeros(between_rows),
-        sxx=np.zeros(on_rows),
-        syy=np.zeros(on_rows),
-        sxy=np.zeros(between_rows),
+        vx=np.zeros(on_rows, scene.number_type),
+        vy=np.zeros(between_rows, scene.number_type),
+        sxx=np.zeros(on_rows, scene.number_type),
+        syy=np.zeros(on_rows, scene.number_type),
+        sxy=np.zeros(between_rows, scene.number_type),
     )
 
 
@@ -487,8 +527,8 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes = columns.copy()
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
-    # The strain energy of normal stresses in plane strain, with 1 - gamma as `lateral`, and that of
-    # shear stress.
+    # The strain energy of normal stresses in plane strain, with 1 - gamma as ``lateral``, and that
+    # of shear stress. The square of a stress is its earlier value times its later value.
     lateral = elastic.lateral.max()
     equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
     mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx

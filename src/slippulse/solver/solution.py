@@ -60,14 +60,14 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
     """
     medium, motion = lattice.medium, lattice.motion
     dx = medium.dx
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
     strain = motion.strain if lattice.localised else _gradient(slip, dx)
     weights = _block_weights(lattice)
     viscous_loss = totals["viscous_loss"]
     if medium.law_number:
-        # Such laws are solved by symplectic Euler, which is a leapfrog scheme: its velocities
-        # belong to the time half a step before that of its slip. The energies are computed at the
-        # time of the velocities.
+        # A law that is not linear has a number, and is solved by symplectic Euler. This is a
+        # leapfrog scheme: velocities belong to the time half a step before that of the slip. The
+        # energies are computed at the time of the velocities.
         step = lattice.scene.max_step * dx
         slip = slip - 0.5 * step * velocity
         strain = _gradient(slip, dx)
@@ -139,11 +139,13 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
 
     status : the reason why the kernel stopped
     """
+    # The fields of the record with the totals of the run, by name.
     totals = dict(zip(TALLY_DTYPE.names or (), lattice.tally.tolist(), strict=True))
     medium, motion = lattice.medium, lattice.motion
     dx = medium.dx
-    slip, velocity = motion.w[SLIP], motion.w[VELOCITY]
-    # The stress at the end, of all blocks except the ghost blocks.
+    slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    # The stress at the end, of all blocks except the ghost blocks. Only the localised scheme keeps
+    # the strain, which is more accurate than differences of slip.
     elastic = np.diff(motion.strain[:-1]) / dx if lattice.localised else np.diff(slip, 2) / dx**2
     stress = (motion.tau - medium.leaf_stiffness * slip)[1:-1] + elastic
     if medium.damping_counts_for_release:
@@ -169,6 +171,8 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
     """Return the solution of a lattice whose kernel stopped for the reason ``status``."""
     motion, history = lattice.motion, lattice.history
     _fill_missing_samples(lattice)
+    # Numbers of the blocks, from 0 at x = 0. Those from the first to the last released one are
+    # kept, with a margin.
     blocks = np.arange(lattice.size) + lattice.first_block
     released = blocks[np.isfinite(history.release_time)]
     first, last = 0, 0
@@ -181,7 +185,10 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
     is_kept[0] = is_kept[-1] = False
 
     def unfold(values: np.ndarray, sign: int = 1) -> np.ndarray:
-        """Return the values of the kept blocks, with those of mirror images times a sign."""
+        """Return the values of the kept blocks, and before them those of their mirror images.
+
+        sign : factor of the values of mirror images
+        """
         kept = values[is_kept]
         if not lattice.is_mirrored:
             return kept.copy()
@@ -194,9 +201,9 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
         prestress=unfold(motion.tau),
         release_time=unfold(history.release_time),
         stick_time=unfold(history.stick_time),
-        slip=unfold(motion.w[SLIP]),
-        slip_velocity=unfold(motion.w[VELOCITY]),
-        slip_acceleration=unfold(np.where(lattice.sliding, motion.w[ACCELERATION], 0.0)),
+        slip=unfold(motion.derivatives[SLIP]),
+        slip_velocity=unfold(motion.derivatives[VELOCITY]),
+        slip_acceleration=unfold(np.where(lattice.sliding, motion.derivatives[ACCELERATION], 0.0)),
         numbers=compute_numbers(lattice, status),
         sample_slip=lattice.recorder.slip if lattice.samples else None,
         sample_velocity=lattice.recorder.velocity if lattice.samples else None,
@@ -208,7 +215,7 @@ def _fill_missing_samples(lattice: Lattice) -> None:
 
     The lattice is at rest at the times of these samples.
     """
-    recorder, w = lattice.recorder, lattice.motion.w
+    recorder, w = lattice.recorder, lattice.motion.derivatives
     missing_times = slice(lattice.tally.samples_taken, None)
     has_block = recorder.blocks >= 0
     sampled_blocks = recorder.blocks[has_block]

@@ -32,7 +32,7 @@ def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf, damping
     """Compute the accelerations of blocks first..last-1 from the equation of motion.
 
     The forces come from differences of strain, leaf springs, pre-stress and damping. Those of
-    friction are subtracted elsewhere.
+    friction are subtracted elsewhere. Row k of ``w`` is time derivative k of slip.
 
     leaf : stiffness of the leaf springs
     damping : beta/dx^2
@@ -72,13 +72,15 @@ def add_two_taylor_terms(nested, w, k, weight, lower_weight, first, last):
 def compute_velocities(out, w, first, last, step, order):
     """Compute the velocities of blocks first..last-1 after a time ``step``, in ``out``.
 
-    The Taylor polynomial of degree ``order`` is summed from the innermost parenthesis on:
+    Horner's rule sums the Taylor polynomial of degree ``order``, whose coefficients are the time
+    derivatives w[1], w[2], ... of slip, from its innermost parenthesis outwards:
     w[1] + step (w[2] + step/2 (w[3] + step/3 (w[4] + ... step/order w[order + 1]))).
 
     Returns the number of blocks that may stop within this time.
     """
-    # ``out`` holds the parenthesis that begins with w[k + 1]. Each pass adds two terms and lowers k
-    # by 2, down to 3. If the order is even, one term is added first, so that k is odd.
+    # ``out`` holds the parenthesis that begins with w[k + 1]. Each pass over the blocks adds two
+    # terms and lowers k by 2, down to 3. The first pass adds one term if the order is even, so that
+    # k is odd.
     k = order
     if order % 2 == 1:
         for i in block_range(first, last):
@@ -91,7 +93,7 @@ def compute_velocities(out, w, first, last, step, order):
     while k > 3:
         add_two_taylor_terms(out, w, k, step / k, step / (k - 1), first, last)
         k -= 2
-    count = np.int64(0)
+    may_stop_count = np.int64(0)
     half, third = step / 2.0, step / 3.0
     for i in block_range(first, last):
         after = w[1, i] + step * (w[2, i] + half * (w[3, i] + third * out[i]))
@@ -99,20 +101,22 @@ def compute_velocities(out, w, first, last, step, order):
         # Count the block if its velocity is negative or NaN after the step. If it is negative only
         # for a part of the step, its tangent at the start of the step is negative at the end.
         tangent_after = w[1, i] + step * w[2, i]
-        count += (not (after >= 0.0)) | (tangent_after < 0.0)
-    return count
+        may_stop_count += (not (after >= 0.0)) | (tangent_after < 0.0)
+    return may_stop_count
 
 
 @kernel_function(inline=True)
 def advance_slip(w, velocity, first, last, step, order):
-    """Advance the slip of blocks first..last-1 by a step, with a polynomial of degree order + 1.
+    """Advance the slip of blocks first..last-1 by a step, with a Taylor polynomial.
 
-    The velocity at the end of the step is copied from ``velocity``. The change of slip is left in
-    row SLIP_INCREMENT of ``w``.
+    Horner's rule sums the polynomial of degree order + 1 from its innermost parenthesis outwards:
+    w[0] + step (w[1] + step/2 (w[2] + ... step/(order + 1) w[order + 1])).
+    The change of slip is left in row SLIP_INCREMENT of ``w``, the table of time derivatives. The
+    row of velocities is replaced by ``velocity``, the velocities at the end of the step.
     """
-    # The polynomial is w[0] + step (w[1] + step/2 (w[2] + ... step/(order + 1) w[order + 1])). The
-    # highest row of ``w`` receives the parenthesis that begins with w[k + 1]. Each pass adds two
-    # terms, until k is 4 (if the order is even) or 3.
+    # ``nested`` holds the parenthesis that begins with w[k + 1]. Its memory is the highest row of
+    # w, which is needed only once. Each pass over the blocks adds two terms, until k is 4 (if the
+    # order is even) or 3.
     nested = w[order + 1]
     k = order
     while k > 4:

@@ -16,6 +16,7 @@ derivatives of all other blocks are zero.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -89,7 +90,7 @@ def take_samples(recorder, motion, tally, start, end, order):
     began. The polynomial of slip has the degree ``order`` + 1, and that of velocity ``order``.
     """
     times, blocks = recorder.times, recorder.blocks
-    w = motion.w
+    w = motion.derivatives
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
         # Time of the sample since the step began.
@@ -105,9 +106,18 @@ def take_samples(recorder, motion, tally, start, end, order):
                 slip_change = s / k * (w[k, i] + slip_change)
             for k in range(order, 0, -1):
                 velocity_change = s / k * (w[k + 1, i] + velocity_change)
-            recorder.slip[n, p] = w[SLIP, i] + motion.offset[i] + slip_change
+            recorder.slip[n, p] = w[SLIP, i] + motion.event_slip[i] + slip_change
             recorder.velocity[n, p] = w[VELOCITY, i] + velocity_change
         tally.samples_taken += 1
+
+
+class Dissipation(NamedTuple):
+    """Energy that is lost per unit time at the start of a step, and its time derivatives."""
+
+    viscous: float  # lost to damping and to friction alpha v
+    viscous_slope: float
+    friction: float  # lost to piecewise linear friction
+    friction_slope: float
 
 
 @inlined_kernel
@@ -118,10 +128,10 @@ def compute_dissipation(medium, motion, segments):
     Friction alpha v dissipates alpha dx times the sum of v_i^2 over all blocks.
     """
     # Sums of dv^2 and dv da over pairs of neighbours, and of v^2 and v a over blocks, where a is
-    # the acceleration.
+    # the acceleration. They leave out mirror images, and are doubled on a mirrored lattice below.
     dv_squared, dv_da = 0.0, 0.0
     v_squared, v_a = 0.0, 0.0
-    w = motion.w
+    w = motion.derivatives
     for r in range(segments.count.n):
         first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
         at_axis = medium.is_mirrored and first == 1
@@ -131,11 +141,11 @@ def compute_dissipation(medium, motion, segments):
         dv_squared += square
         dv_da += product
         if medium.alpha != 0.0:
-            # The sums are doubled below, but the block at x = 0 has no mirror image.
-            half = 0.5 if at_axis else 0.0
             square, product = friction.sum_velocity_products(w, first, last)
-            v_squared += square - half * w[VELOCITY, 1] * w[VELOCITY, 1]
-            v_a += product - half * w[VELOCITY, 1] * w[ACCELERATION, 1]
+            # Block 1 at x = 0 has no mirror image. Half of it is removed, because it is doubled.
+            excess = 0.5 if at_axis else 0.0
+            v_squared += square - excess * w[VELOCITY, 1] * w[VELOCITY, 1]
+            v_a += product - excess * w[VELOCITY, 1] * w[ACCELERATION, 1]
     sides = 2.0 if medium.is_mirrored else 1.0
     viscous_factor = sides * medium.beta / medium.dx
     drag_factor = sides * medium.alpha * medium.dx
@@ -145,7 +155,7 @@ def compute_dissipation(medium, motion, segments):
 
 @kernel_function()
 def clear_slope_changes(slope_changes):
-    """Remove all changes of the slope of a dissipation, at the start of a step."""
+    """Forget how the events of the previous step changed the slope of a dissipation."""
     slope_changes.moment_0 = 0.0
     slope_changes.moment_1 = 0.0
     slope_changes.moment_2 = 0.0
@@ -153,7 +163,11 @@ def clear_slope_changes(slope_changes):
 
 @kernel_function()
 def add_slope_change(slope_changes, change, time):
-    """Add a change of the slope of a dissipation at a time since the step began."""
+    """Add an event that changes the time derivative (slope) of a dissipation.
+
+    Of all events of a step, only the sums of k, k s and k s^2 are kept, where k is the change and s
+    the time of an event since the step began. `loss_of_step` needs no more.
+    """
     slope_changes.moment_0 += change
     slope_changes.moment_1 += change * time
     slope_changes.moment_2 += change * time * time
@@ -170,7 +184,7 @@ def loss_of_step(h, dissipation, slope, slope_changes):
     already, h k (h - s)/3 is subtracted again.
 
     dissipation, slope : D_0 and D_0'
-    slope_changes : moments of k over the events of the step, see `arrays.SLOPE_CHANGES_DTYPE`
+    slope_changes : moments, the sums of k, k s and k s^2 over the events of the step
     """
     without_events = h * 2.0 * dissipation / 3.0 + h * h * slope / 6.0
     # The sums of k (h - s) and of k (h - s)^2 over the events of the step.
@@ -181,16 +195,51 @@ def loss_of_step(h, dissipation, slope, slope_changes):
     return without_events + sum_of_squares / 2.0 - h * sum_of_first_powers / 3.0
 
 
+@inlined_kernel
+def complete_losses(medium, motion, segments, tally):
+    """Complete the energy losses of the previous step, and return the present dissipation.
+
+    The losses of that step, of length h (``pending_step``), still lack the part h D_1/3. Here D_1
+    is the dissipation at its end, which is now (see `loss_of_step`).
+    """
+    viscous, viscous_slope = 0.0, 0.0
+    if medium.beta > 0.0 or medium.alpha != 0.0:
+        viscous, viscous_slope = compute_dissipation(medium, motion, segments)
+        tally.viscous_loss += tally.pending_step * viscous / 3.0
+    power, power_slope = friction.friction_power(medium, motion, segments, medium.law_kink)
+    tally.friction_loss += tally.pending_step * power / 3.0
+    tally.pending_step = 0.0
+    return Dissipation(viscous, viscous_slope, power, power_slope)
+
+
+@inlined_kernel
+def add_losses(medium, tally, step_events, dissipation, h):
+    """Add the energy losses of a step of length h, except for the part from its end.
+
+    `complete_losses` adds this part at the start of the next step.
+
+    dissipation : `Dissipation` at the start of the step
+    """
+    if medium.beta > 0.0 or medium.alpha != 0.0:
+        tally.viscous_loss += loss_of_step(
+            h, dissipation.viscous, dissipation.viscous_slope, step_events.loss_slope_changes
+        )
+    tally.friction_loss += loss_of_step(
+        h, dissipation.friction, dissipation.friction_slope, step_events.work_slope_changes
+    )
+    tally.pending_step = h
+
+
 @kernel_function(inline=True)
 def fill_derivatives(medium, motion, segments, alpha, top):
-    """Compute the time derivatives 2 to ``top`` of slip on all segments, in the rows of w.
+    """Compute the time derivatives 2 to ``top`` of the slip of all sliding blocks.
 
-    Each time derivative of the equation of motion gives one derivative of slip from the two before
-    it. On a mirrored lattice, block 0 is the mirror image of block 2.
-
-    alpha : friction per unit slip velocity
+    The equation of motion gives derivative 2, the acceleration. Each of its time derivatives gives
+    a higher one from the two before it. Friction is alpha v, or a piecewise linear law.
     """
-    w, is_mirrored = motion.w, medium.is_mirrored
+    # Row k of w is time derivative k. On a mirrored lattice, block 0 is the mirror image of block
+    # 2, and is updated before each derivative that reads it.
+    w, is_mirrored = motion.derivatives, medium.is_mirrored
     leaf_stiffness, damping = medium.leaf_stiffness, medium.damping
     for r in range(segments.count.n):
         first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
@@ -212,6 +261,7 @@ def fill_derivatives(medium, motion, segments, alpha, top):
                 )
             if alpha != 0.0:
                 friction.subtract_rate_strengthening(w, k, first, last, alpha)
+            # The columns of w are the blocks of the lattice from block 0 on.
             friction.add_weakening(w, k, first, last, np.uint64(0), motion, medium.law_kink)
     if is_mirrored:
         for k in range(1, top + 1):
@@ -232,22 +282,24 @@ def fill_rate_strengthened_derivatives(medium, motion, segments, top):
 def predict_events(medium, motion, segments, prediction, tally, h, top):
     """Compute all velocities at time h, the end of the step, and predict the events until then.
 
-    Returns False if a velocity is not finite.
+    All times are counted from the start of the step. Returns False if a velocity is not finite.
 
     top : order of the highest time derivative of slip
     """
     prediction.event_count.n = 0
     for r in range(segments.count.n):
         first, last = segments.edges[2 * r], segments.edges[2 * r + 1]
-        suspects = stencils.compute_velocities(motion.velocity, motion.w, first, last, h, top - 1)
-        if suspects > 0 and not event_prediction.predict_sticks(
-            motion, prediction, first, last, suspects, 0.0, h, top
+        may_stick_count = stencils.compute_velocities(
+            motion.end_velocity, motion.derivatives, first, last, h, top - 1
+        )
+        if may_stick_count > 0 and not event_prediction.predict_sticks(
+            motion, prediction, first, last, may_stick_count, 0.0, h, top
         ):
             return False
         event_prediction.predict_law_kinks(
             motion, medium.law_kink, prediction, first, last, 0.0, h, top
         )
-    # The whole lattice.
+    # Releases are predicted for all blocks of the lattice that can be released.
     start, end = np.int64(0), motion.tau.shape[0]
     lowest_stress = event_prediction.predict_releases(
         medium, motion, segments, prediction, start, end, 0.0, h
@@ -258,15 +310,20 @@ def predict_events(medium, motion, segments, prediction, tally, h, top):
 
 @inlined_kernel
 def set_velocities_at_early_end(motion, scratch, h, order):
-    """Compute the velocities of all blocks that moved in a step that ends early, at the time h."""
+    """Compute the velocities at the time h, at which a step ends early, of all blocks that moved.
+
+    Predicted velocities are those at the end of the full step. The polynomials of the blocks
+    (``order`` is the degree) contain all earlier events of the step.
+    """
     moved, step_events = scratch.moved, scratch.step_events
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.compute_velocities(motion.velocity, motion.w, first, last, h, order)
+        stencils.compute_velocities(motion.end_velocity, motion.derivatives, first, last, h, order)
     for q in range(step_events.count.n):
-        # The velocity of a block that was just released can be negative by rounding.
+        # The velocity of a block that was just released can be negative by rounding. Such blocks
+        # are among those that the events of the step have changed.
         for i in range(step_events.first[q], step_events.last[q]):
-            motion.velocity[i] = max(motion.velocity[i], 0.0)
+            motion.end_velocity[i] = max(motion.end_velocity[i], 0.0)
 
 
 @inlined_kernel
@@ -275,21 +332,24 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
 
     Returns False if a velocity is not finite.
 
-    event : `Event`, its time counted from the start of the step
+    event : `Event` (release, stick or kink of the law), its time counted from the start of the step
     instant : the time of the event since the start of the run
     h : duration of the step
     """
-    top = motion.w.shape[0] - 1
+    top = motion.derivatives.shape[0] - 1
     step_events, tally = scratch.step_events, history.tally
     block, is_stick = event.block, event.is_stick
+    # The lists of the blocks that slide, and the history.
     if is_stick:
         toggle_block(segments, block)
         record_stick(history, block, instant)
     elif not event.is_law_kink:
         toggle_block(segments, block)
+        # The blocks that slid at any time of the step.
         if not contains_block(scratch.moved, block):
             toggle_block(scratch.moved, block)
         record_release(history, block, instant)
+    # The motion, and then the energy losses and the counters.
     effect = apply_event(
         medium, motion, segments, scratch.prediction, scratch.difference, event, h, top
     )
@@ -299,15 +359,15 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
     # The viscous dissipation is beta/dx times the sum of (v_{i+1} - v_i)^2 over all neighbours.
-    # Its slope therefore has a factor of 2. On a mirrored lattice each pair counts twice, and each
-    # block too, except block 1 on the axis.
+    # Its time derivative, the slope, therefore has a factor of 2. On a mirrored lattice each pair
+    # counts twice, and each block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
     weight = 2.0 if medium.is_mirrored and block > 1 else 1.0
     work_slope_change = weight * medium.dx * effect.work_slope_change
     add_slope_change(step_events.work_slope_changes, work_slope_change, event.time)
-    # Keep the blocks that changed, for a step that ends early.
+    # Note which blocks the event has changed. `finish_step` completes their slip.
     n = step_events.count.n
     step_events.first[n], step_events.last[n] = effect.first, effect.last
     step_events.stuck_block[n] = block if is_stick else -1
@@ -324,22 +384,25 @@ def finish_step(medium, motion, scratch, tally, order, h):
 
     h : duration of the step
     """
-    w, offset = motion.w, motion.offset
+    w, event_slip = motion.derivatives, motion.event_slip
     moved, step_events = scratch.moved, scratch.step_events
     fastest = 0.0
+    # The slip by the Taylor polynomials. Its change is left in the row SLIP_INCREMENT of w, which
+    # is also the row of the acceleration.
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
-        stencils.advance_slip(w, motion.velocity, first, last, h, order)
+        stencils.advance_slip(w, motion.end_velocity, first, last, h, order)
         tally.block_updates += last - first
         middle = (first + last) // 2
         fastest = max(fastest, w[VELOCITY, first], w[VELOCITY, middle], w[VELOCITY, last - 1])
-    # Events have changed the slip by the offset. It is added once to each block and then cleared.
+    # The slip that events of the step have added. It is added once to each block and then cleared.
     for q in range(step_events.count.n):
         for i in range(step_events.first[q], step_events.last[q]):
-            w[SLIP, i] += offset[i]
-            w[SLIP_INCREMENT, i] += offset[i]
-            offset[i] = 0.0
-    # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment.
+            w[SLIP, i] += event_slip[i]
+            w[SLIP_INCREMENT, i] += event_slip[i]
+            event_slip[i] = 0.0
+    # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment. Before
+    # block 1 of a mirrored lattice it is that of the mirror image, and is set below.
     first_bond = 1 if medium.is_mirrored else 0
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
@@ -348,7 +411,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
-    # The row SLIP_INCREMENT is also that of the acceleration, which is 0 for a block at rest.
+    # A block at rest has the acceleration 0. For sliding blocks the next step computes it.
     for q in range(step_events.count.n):
         if step_events.stuck_block[q] >= 0:
             w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0
@@ -364,7 +427,7 @@ def apply_simultaneous_events(medium, motion, segments, scratch, history, end, l
     top : order of the highest time derivative of slip
     """
     prediction, tally = scratch.prediction, history.tally
-    # The step is over, so that an array of its events can hold the blocks to be released.
+    # The list of due blocks uses the memory of an array that is no longer needed in this step.
     due = scratch.step_events.first
     due_count = event_prediction.list_due_releases(segments, prediction, latest, due)
     # Sticks and kinks of the law.
@@ -374,9 +437,9 @@ def apply_simultaneous_events(medium, motion, segments, scratch, history, end, l
             if prediction.is_law_kink[q]:
                 friction.switch_weakening(motion, medium.law_kink, block)
                 continue
-            tally.min_velocity = min(tally.min_velocity, motion.w[VELOCITY, block])
+            tally.min_velocity = min(tally.min_velocity, motion.derivatives[VELOCITY, block])
             for k in range(1, top + 1):
-                motion.w[k, block] = 0.0
+                motion.derivatives[k, block] = 0.0
             toggle_block(segments, block)
             record_stick(history, block, end)
     # Releases.
@@ -388,41 +451,31 @@ def apply_simultaneous_events(medium, motion, segments, scratch, history, end, l
 
 # The branches of this function are the algorithm. Smaller functions would share all of its state.
 @kernel_entry
-def advance(  # noqa: C901, PLR0912, PLR0915
+def advance(  # noqa: C901, PLR0912
     medium, motion, segments, scratch, history, recorder, limits
 ):
     """Advance until a limit, and return the reason why it stopped.
 
-    Each step goes through the numbered stages of the module docstring. The losses of energy of a
-    step are completed at the start of the next one, where the accelerations are computed, too. The
-    function returns only after that, so the losses are complete, and the accelerations
-    (``motion.w[ACCELERATION]``) are those at the final time.
+    Each step goes through the numbered stages of the module docstring. The energy losses of a step
+    are completed at the start of the next one, where the accelerations are computed, too. The end
+    of the run is noticed only after that, so that both are those at the final time.
+
+    limits : step size, end of the scene, and largest number of steps of one call
     """
+    # ``top`` is the order of the highest time derivative of slip.
     order, top = limits.order, limits.order + 1
     size = motion.tau.shape[0]
     time_tolerance = SIMULTANEITY_TOLERANCE * limits.largest_step
     tally, prediction = history.tally, scratch.prediction
     moved, step_events = scratch.moved, scratch.step_events
-    loss_slope_changes = step_events.loss_slope_changes
-    work_slope_changes = step_events.work_slope_changes
-    has_losses = medium.beta > 0.0 or medium.alpha != 0.0
     for _ in range(limits.max_steps):
-        # Stage 1: the derivatives at the start of the step.
+        # Stage 1: the derivatives at the start of the step, and the end of the run.
         start = tally.time
         if medium.alpha == 0.0:
             fill_derivatives(medium, motion, segments, 0.0, top)
         else:
             fill_rate_strengthened_derivatives(medium, motion, segments, top)
-        # The losses of the previous step still lack the part h D_1/3 (see `loss_of_step`). Here h
-        # is the length of that step (`pending_step`). At its end, which is now, D_1 is the
-        # dissipation for the viscous loss, and the power of friction for the friction loss.
-        dissipation, dissipation_slope = 0.0, 0.0
-        if has_losses:
-            dissipation, dissipation_slope = compute_dissipation(medium, motion, segments)
-            tally.viscous_loss += tally.pending_step * dissipation / 3.0
-        power, power_slope = friction.friction_power(medium, motion, segments, medium.law_kink)
-        tally.friction_loss += tally.pending_step * power / 3.0
-        tally.pending_step = 0.0
+        dissipation = complete_losses(medium, motion, segments, tally)
         if segments.count.n == 0:
             return ALL_STUCK
         if start >= limits.end_time:
@@ -432,8 +485,8 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         first = segments.edges[0]
         if last >= size - EDGE_BLOCKS or (first <= EDGE_BLOCKS and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
-        clear_slope_changes(loss_slope_changes)
-        clear_slope_changes(work_slope_changes)
+        clear_slope_changes(step_events.loss_slope_changes)
+        clear_slope_changes(step_events.work_slope_changes)
 
         # The step lasts from the time `start` to `end`, and has the length h. Times of events are
         # counted from its start.
@@ -448,7 +501,7 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         step_events.count.n = 0
 
         # Stage 3: one event after another. The step ends early at an event that has to happen
-        # together with others.
+        # together with others, or after the largest number of events.
         ends_early = False
         while True:
             event = find_next_event(segments, prediction)
@@ -469,18 +522,14 @@ def advance(  # noqa: C901, PLR0912, PLR0915
         take_samples(recorder, motion, tally, start, end, order)
 
         # Stage 4: the end of the step.
-        if has_losses:
-            tally.viscous_loss += loss_of_step(
-                h, dissipation, dissipation_slope, loss_slope_changes
-            )
-        tally.friction_loss += loss_of_step(h, power, power_slope, work_slope_changes)
-        tally.pending_step = h
+        add_losses(medium, tally, step_events, dissipation, h)
         fastest = finish_step(medium, motion, scratch, tally, order, h)
         if ends_early:
             latest = h + time_tolerance
             apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top)
         tally.steps += 1
         tally.time = end
+        # This form of the condition is also met by a velocity that is NaN.
         if not fastest <= BLOW_UP_FACTOR * (1.0 + limits.largest_force * end):
             return BLOWN_UP
     return STEPS_DONE

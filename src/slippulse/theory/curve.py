@@ -46,8 +46,8 @@ NODES_TO_DERIVATIVES = legendre.legvander(NODES, NODE_COUNT - 2) @ legendre.legd
 NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
 # A curve of at most MAX_EAGER_PANELS panels computes the polynomials of all its panels at once. A
 # longer curve computes only the requested polynomials, because a slow front needs only a few at
-# each of its steps. If more than MAX_SEPARATE_COLUMNS are requested at a time, it computes all.
-MAX_EAGER_PANELS, MAX_SEPARATE_COLUMNS = 500, 32
+# each of its steps. If more than MAX_SEPARATE_POLYNOMIALS are requested at once, it computes all.
+MAX_EAGER_PANELS, MAX_SEPARATE_POLYNOMIALS = 500, 32
 # The most steps of Newton's method for a parameter on a panel.
 MAX_NEWTON_STEPS = 40
 # Quantities of which each panel has a polynomial: x, T, T + x, T - x and tau dx/ds. All of them
@@ -72,16 +72,17 @@ def with_slopes(powers: np.ndarray) -> np.ndarray:
     """Return coefficients of polynomials and of their derivatives, as `value_and_slope` needs them.
 
     powers has one row for each power and one column for each polynomial. The number of rows is a
-    multiple of 4. The result has the shape [group, row, polynomial]. The first group has the rows
-    p_0, d_0, p_1, d_1, p_2, d_2, p_3 and d_3, where p_m is the coefficient of the power m in the
-    polynomial, and d_m that in its derivative. The next group goes on with p_4 and d_4.
+    multiple of 4. The result has the shape [group, row, polynomial], where each group has four
+    powers. The rows of the first group are p_0, d_0, p_1, d_1, p_2, d_2, p_3 and d_3, where p_m is
+    the coefficient of the power m in the polynomial, and d_m that in its derivative.
     """
     exponents = np.arange(1.0, len(powers))
     slopes = powers[1:] * exponents[:, None]
     # The derivatives have one power less. A row of zeros makes both arrays equally long.
     slopes = np.append(slopes, np.zeros_like(powers[:1]), axis=0)
-    group_count, polynomial_count = len(powers) // 4, powers.shape[1]
+    # The axes are [power, polynomial or derivative, number of the polynomial].
     in_pairs = np.stack([powers, slopes], axis=1)
+    group_count, polynomial_count = len(powers) // 4, powers.shape[1]
     return in_pairs.reshape(group_count, 8, polynomial_count)
 
 
@@ -176,8 +177,8 @@ class Curve:
         self, panels: list[Panel], restarts: tuple[Sequence[float], Sequence[float]] = ((), ())
     ) -> None:
         self.panels, self.restarts = panels, restarts
-        # The fields of `Panel` for all panels, with shapes [panel, node] and [panel, left or right
-        # end].
+        # Each field of `Panel` becomes one array for all panels. The axes are [panel, node] for the
+        # first three, and [panel, left or right end] for the last two.
         fields = map(np.array, zip(*panels, strict=True))
         self.x, self.time, self.source, self.x_ends, self.time_ends = fields
         self.edges = np.append(self.x_ends[:, 0], self.x_ends[-1, 1])
@@ -197,52 +198,57 @@ class Curve:
         return joined
 
     def with_restarts(self, restarts: tuple[Sequence[float], Sequence[float]]) -> "Curve":
-        """Return this curve with the given restarts, of left fronts and of right fronts."""
+        """Return this curve with other restarts: those of left fronts, and those of right fronts.
+
+        Restarts are the positions where a slow front became faster than the waves again.
+        """
         curve = copy(self)
         # This cached property depends on the restarts. The other ones remain valid.
-        curve.__dict__.pop("_lowest_exits", None)
+        curve.__dict__.pop("_lowest_levels", None)
         curve.restarts = restarts
         return curve
 
     @cached_property
     def end_values(self) -> np.ndarray:
-        """Values of x, T, T + x and T - x at the ends of the panels.
+        """Values of x, T, T + x and T - x at the left ends (row 0) and right ends of the panels.
 
-        The two rows belong to the left and the right ends. Each of the four fields has one column
-        for each panel (see `columns`).
+        The columns are the numbers of `polynomial_numbers`: first x on all panels, then T, and so
+        on.
         """
         x, time = self.x_ends, self.time_ends
         return np.concatenate([x, time, time + x, time - x]).T
 
-    def coefficients(self, columns: np.ndarray) -> np.ndarray:
-        """Return the coefficients of the polynomials with the given columns of `powers`.
+    def coefficients(self, numbers: np.ndarray) -> np.ndarray:
+        """Return the coefficients of polynomials, given by their numbers (`polynomial_numbers`).
 
-        On a long curve only these polynomials are computed (see MAX_EAGER_PANELS).
+        A long curve computes only the requested ones, unless they are many (see MAX_EAGER_PANELS).
         """
         panel_count = len(self.panels)
-        are_all_computed = "powers" in self.__dict__
         is_short = panel_count <= MAX_EAGER_PANELS
-        if is_short or are_all_computed or columns.size > MAX_SEPARATE_COLUMNS:
-            return self.powers.take(columns, axis=-1)
-        fields = [getattr(self, name) for name in PANEL_FIELDS]
-        # The inverse of `columns`.
-        fields_and_panels = [divmod(column, panel_count) for column in columns.tolist()]
-        values = [fields[field][panel] for field, panel in fields_and_panels]
-        return NODES_TO_POWERS @ np.reshape(values, (-1, NODE_COUNT)).T
+        # A cached property is in this dictionary once it was computed.
+        are_all_computed = "all_coefficients" in self.__dict__
+        if is_short or are_all_computed or numbers.size > MAX_SEPARATE_POLYNOMIALS:
+            return self.all_coefficients.take(numbers, axis=-1)
+        node_values = []
+        for number in numbers.tolist():
+            # This is the inverse of `polynomial_numbers`.
+            field, panel = divmod(number, panel_count)
+            node_values.append(getattr(self, PANEL_FIELDS[field])[panel])
+        return NODES_TO_POWERS @ np.reshape(node_values, (-1, NODE_COUNT)).T
 
     @cached_property
-    def powers(self) -> np.ndarray:
-        """Coefficients of the polynomials of PANEL_FIELDS on all panels, as in `with_slopes`.
+    def all_coefficients(self) -> np.ndarray:
+        """Coefficients of the polynomials of all fields on all panels, as `with_slopes` gives them.
 
-        The last axis has one column for each panel and field (see `columns`).
+        The last axis has the numbers of `polynomial_numbers`.
         """
-        values = np.concatenate([getattr(self, name) for name in PANEL_FIELDS])
-        return NODES_TO_POWERS @ values.T
+        node_values = np.concatenate([getattr(self, name) for name in PANEL_FIELDS])
+        return NODES_TO_POWERS @ node_values.T
 
-    def columns(self, name: str, panel: np.ndarray) -> np.ndarray:
-        """Return the columns of a field on some panels, in `end_values` and `powers`.
+    def polynomial_numbers(self, name: str, panel: np.ndarray) -> np.ndarray:
+        """Return the numbers of the polynomials of a field (one of PANEL_FIELDS) on some panels.
 
-        The columns of all panels for the first field come first, then those for the second field,
+        The polynomials of the first field on all panels come first, then those of the second field,
         and so on.
         """
         return panel + len(self.panels) * PANEL_FIELDS.index(name)
@@ -252,7 +258,8 @@ class Curve:
 
         With order 1 it is the derivative of the field by s.
         """
-        return value_and_slope(self.coefficients(self.columns(name, panel)), s)[order]
+        coefficients = self.coefficients(self.polynomial_numbers(name, panel))
+        return value_and_slope(coefficients, s)[order]
 
     def covers(self, x: np.ndarray) -> np.ndarray:
         """Return a mask of the positions that lie on the curve."""
@@ -268,7 +275,7 @@ class Curve:
     def locate(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the panel of each position, and the parameter on it."""
         panel = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, len(self.panels) - 1)
-        return panel, self._solve(self.columns("x", panel), x)
+        return panel, self._find_parameters(self.polynomial_numbers("x", panel), x)
 
     def crossings(
         self, y: np.ndarray, xi: np.ndarray, eta: np.ndarray
@@ -276,42 +283,45 @@ class Curve:
         """Return where the characteristics through points (y, t) meet the curve: left and right.
 
         The left one is traced back in time from the point to the left, to where T - x = xi = t - y.
-        The right one is traced back to the right, to where T + x = eta = t + y.
+        The right one is traced back to the right, to where T + x = eta = t + y. First the panels
+        are found, and then the parameters s on them.
         """
-        exits_to_right, exits_to_left = self._lowest_exits
+        levels_to_right, levels_to_left = self._lowest_levels
         right, meets_right = _panels_of_crossings(
-            self.edges, regions=exits_to_right, y=y, level=eta
+            self.edges, lowest_levels=levels_to_right, y=y, level=eta
         )
         # The left side is searched as the right side of the mirrored curve, in which the order of
         # the panels is reversed.
         left_of_mirrored, meets_left = _panels_of_crossings(
-            -self.edges[::-1], regions=exits_to_left, y=-y, level=xi
+            -self.edges[::-1], lowest_levels=levels_to_left, y=-y, level=xi
         )
         left = len(self.panels) - 1 - left_of_mirrored
         # Both sides are solved together. The first half of the results belongs to the left.
-        columns = np.concatenate([self.columns("t_minus_x", left), self.columns("t_plus_x", right)])
-        s = self._solve(columns, np.concatenate([xi, eta]))
+        numbers_left = self.polynomial_numbers("t_minus_x", left)
+        numbers_right = self.polynomial_numbers("t_plus_x", right)
+        numbers = np.concatenate([numbers_left, numbers_right])
+        s = self._find_parameters(numbers, np.concatenate([xi, eta]))
         s_left = np.where(meets_left, s[: y.size], -1.0)
         s_right = np.where(meets_right, s[y.size :], 1.0)
         return Crossing(left, s_left, meets_left), Crossing(right, s_right, meets_right)
 
     @cached_property
-    def _lowest_exits(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """Lowest exit values, which show on which panel a characteristic leaves the rupture.
+    def _lowest_levels(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Levels from which `crossings` finds the panel on which a characteristic meets the curve.
 
-        A characteristic that is traced to the right leaves a panel at its right end. The exit value
-        of the panel is T + x there. If it is traced to the left, the exit value is T - x at the
-        left end. For each panel, the lowest exit value of this panel and of all panels beyond it is
-        computed (`_lowest_exit_beyond`), first to the right and then to the left.
+        For a characteristic that is traced to the right, the level of a panel is T + x at its right
+        end. If it is traced to the left, the level is T - x at the left end. For each panel, the
+        lowest level of this panel and of all panels beyond it is computed (`_lowest_level_beyond`),
+        first for the right and then for the left.
         """
         left_end, right_end = 0, 1
-        exits_at_right_ends = self.time_ends[:, right_end] + self.x_ends[:, right_end]
-        exits_at_left_ends = self.time_ends[:, left_end] - self.x_ends[:, left_end]
+        t_plus_x = self.time_ends[:, right_end] + self.x_ends[:, right_end]
+        t_minus_x = self.time_ends[:, left_end] - self.x_ends[:, left_end]
         # T + x has a maximum at the restarts of left fronts, and T - x at those of right fronts.
         left_restarts, right_restarts = self.restarts
-        to_right = _lowest_exit_beyond(exits_at_right_ends, self.edges, left_restarts)
+        to_right = _lowest_level_beyond(t_plus_x, self.edges, left_restarts)
         # To the left the order of panels and edges is reversed.
-        to_left = _lowest_exit_beyond(exits_at_left_ends[::-1], self.edges[::-1], right_restarts)
+        to_left = _lowest_level_beyond(t_minus_x[::-1], self.edges[::-1], right_restarts)
         return to_right, to_left
 
     def front_at(self, time: float, x: float, side: float) -> float:
@@ -327,33 +337,37 @@ class Curve:
         # The front is on the panel that leads to the nearest of these edges. Panel k lies between
         # the edges k and k + 1.
         panel = np.array([released_later[0] - 1 if side > 0.0 else released_later[-1]])
-        s = self._solve(self.columns("time", panel), np.array([time]))
+        s = self._find_parameters(self.polynomial_numbers("time", panel), np.array([time]))
         front = float(self.evaluate("x", panel, s)[0])
         # If x itself is on this panel, the result is not behind it.
         return side * max(side * front, side * x)
 
-    def _solve(self, columns: np.ndarray, level: np.ndarray) -> np.ndarray:
-        """Return the parameters s at which fields have given levels, one for each column.
+    def _find_parameters(self, numbers: np.ndarray, level: np.ndarray) -> np.ndarray:
+        """Return the parameters s at which fields have the given levels, each on its panel.
 
-        A column stands for one monotonic field on one panel (see `columns`). Newton's method starts
-        from linear interpolation between the ends of the panel. Its steps do not leave the panel.
+        The fields are polynomials that are monotonic on their panels, given by their numbers
+        (`polynomial_numbers`). Newton's method starts from linear interpolation between the ends of
+        the panel. Its steps do not leave the panel.
         """
-        at_left, at_right = self.end_values[:, columns]
+        at_left, at_right = self.end_values[:, numbers]
         rise = at_right - at_left
         is_flat = np.abs(rise) < 1e-13
         fraction = (level - at_left) / np.where(is_flat, 1.0, rise)
-        parameters = (2.0 * fraction - 1.0).clip(-1.0, 1.0)
+        s = (2.0 * fraction - 1.0).clip(-1.0, 1.0)
         # A level at an end of the panel needs no step. It is left out because this end is a double
         # root where a slow front has stopped, so that Newton's steps would only halve the distance.
         distance_to_end = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         unsolved = np.flatnonzero(distance_to_end > 1e-15 * np.abs(level))
-        # The sign of the slope is that of the rise, since the field is monotonic. A smallest slope
-        # limits the steps.
-        sign, min_slope = np.sign(rise), np.where(is_flat, 1.0, 1e-8 * np.abs(rise) + 1e-300)
-        newton_arguments = np.array([parameters, level, sign, min_slope])[:, unsolved]
-        coefficients = self.coefficients(columns[unsolved])
-        parameters[unsolved] = _solve_by_newton(coefficients, *newton_arguments)
-        return parameters
+        # A smallest slope limits the steps.
+        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(rise) + 1e-300)
+        s[unsolved] = _solve_by_newton(
+            self.coefficients(numbers[unsolved]),
+            s=s[unsolved],
+            level=level[unsolved],
+            sign=np.sign(rise[unsolved]),
+            min_slope=min_slope[unsolved],
+        )
+        return s
 
 
 def _solve_by_newton(
@@ -365,10 +379,12 @@ def _solve_by_newton(
 ) -> np.ndarray:
     """Return the parameters at which monotonic polynomials have given levels, by Newton's method.
 
-    s is where the search starts. sign is the sign of the slope of each polynomial, and min_slope
-    the smallest size of the slope that is used. coefficients are those of `value_and_slope`.
+    s is where the search starts. sign is the sign of the slope of each polynomial. Slopes of a size
+    below min_slope are replaced by it. coefficients are those of `value_and_slope`.
     """
-    parameters, unsolved = s.copy(), np.arange(s.size)
+    parameters = s.copy()
+    # From here on, all arrays are kept only for the polynomials that are not solved yet.
+    unsolved = np.arange(s.size)
     for _ in range(MAX_NEWTON_STEPS):
         if not unsolved.size:
             break
@@ -376,59 +392,64 @@ def _solve_by_newton(
         step = sign * (level - value) / np.maximum(sign * slope, min_slope)
         next_s = (s + step).clip(-1.0, 1.0)
         parameters[unsolved] = next_s
-        # Only parameters that still change are kept.
-        changes = np.abs(next_s - s) >= 1e-9
-        unsolved, coefficients = unsolved[changes], coefficients.compress(changes, axis=-1)
-        s, level, sign, min_slope = np.array([next_s, level, sign, min_slope])[:, changes]
+        still_changes = np.abs(next_s - s) >= 1e-9
+        unsolved, s = unsolved[still_changes], next_s[still_changes]
+        level, sign = level[still_changes], sign[still_changes]
+        min_slope = min_slope[still_changes]
+        coefficients = coefficients.compress(still_changes, axis=-1)
     return parameters
 
 
-def _lowest_exit_beyond(
-    exits: np.ndarray, edges: np.ndarray, restarts: Sequence[float]
+def _lowest_level_beyond(
+    levels: np.ndarray, edges: np.ndarray, restarts: Sequence[float]
 ) -> list[np.ndarray]:
-    """Return, for each panel, the lowest exit value of this panel and of later ones in its region.
+    """Return, for each panel, the lowest level of this panel and of later ones in its region.
 
-    The result has one array for each region. A region ends at a restart, because exit values have a
-    maximum there. A characteristic that leaves the rupture before this maximum is not followed
-    beyond it, so that panels of later regions do not count.
+    The result has one array for each region. A region ends at a restart, because levels have a
+    maximum there. A characteristic that meets the curve before this maximum is not followed beyond
+    it, so that panels of later regions do not count.
 
-    exits : exit value of each panel, in the order in which a characteristic crosses the panels
+    levels : T + x or T - x at the far end of each panel, in the order in which a characteristic
+        crosses the panels
     edges : ends of the panels, in the same order
     restarts : positions where the regions end
     """
     region_ends = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
     lowest = []
-    for exits_of_region in np.split(exits, region_ends):
-        from_far_end = np.minimum.accumulate(exits_of_region[::-1])
+    for levels_of_region in np.split(levels, region_ends):
+        from_far_end = np.minimum.accumulate(levels_of_region[::-1])
         lowest.append(from_far_end[::-1])
     return lowest
 
 
 def _panels_of_crossings(
-    edges: np.ndarray, regions: list[np.ndarray], y: np.ndarray, level: np.ndarray
+    edges: np.ndarray, lowest_levels: list[np.ndarray], y: np.ndarray, level: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return, for each point, the panel where its characteristic to the right leaves the rupture.
+    """Return, for each point, the panel on which its characteristic to the right meets the curve.
 
     On this panel T + x rises to its value at the point (level), for the last time in its region.
-    The regions are searched from that of the point to the right. Also return a mask that is False
-    for points without such a panel; for these the last panel is returned.
+    The regions are searched from that of the point to the right, until one has such a panel. Also
+    return a mask that is False for points without a panel; for these the last panel is returned.
 
     edges : ends of the panels
-    regions : lowest exit values of the panels in each region (`_lowest_exit_beyond`)
+    lowest_levels : for each region and each of its panels, the lowest T + x at the right ends of
+        this panel and of later panels in the region
     y, level : position of each point, and t + y there
     """
     panel_count = edges.size - 1
     panel_of_point = np.minimum(np.searchsorted(edges, y, side="right") - 1, panel_count - 1)
-    panel, first_of_region = np.full(y.shape, panel_count), 0
-    for lowest_exits in regions:
-        end_of_region = first_of_region + lowest_exits.size
-        # T + x reaches the level on this panel, and beyond it stays above the level up to the end
-        # of the region. The lowest exit values are in ascending order.
-        candidate = first_of_region + np.searchsorted(lowest_exits, level, side="left")
-        has_crossing = (panel_of_point < end_of_region) & (candidate < end_of_region)
+    # As long as no panel is found, the number of panels stands for it.
+    panel = np.full(y.shape, panel_count)
+    region_start = 0
+    for lowest_levels_of_region in lowest_levels:
+        region_end = region_start + lowest_levels_of_region.size
+        # From the right end of this panel to the end of the region, T + x is not below the level.
+        # The lowest levels are in ascending order.
+        candidate = region_start + np.searchsorted(lowest_levels_of_region, level, side="left")
+        has_crossing = (panel_of_point < region_end) & (candidate < region_end)
         is_not_found = panel == panel_count
         panel = np.where(has_crossing & is_not_found, candidate, panel)
-        first_of_region = end_of_region
+        region_start = region_end
     return np.minimum(panel, panel_count - 1), panel < panel_count
 
 
@@ -442,12 +463,13 @@ def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """
     square = s * s
     fourth = square * square
-    # Horner's rule for q_0 to q_3. Each has two rows: for the value, and for the derivative.
+    # Horner's rule in s^4. q has eight rows: two for each of q_0 to q_3, of which the first one
+    # belongs to the value, and the second one to the derivative.
     q = coefficients[-1] * fourth
     for group in coefficients[-2:0:-1]:
         q += group
         q *= fourth
     q += coefficients[0]
-    # q_0 + s^2 q_2 in the first two rows, and q_1 + s^2 q_3 in the last two.
+    # The first two rows are q_0 + s^2 q_2, and the last two are q_1 + s^2 q_3.
     halves = q[:4] + square * q[4:]
     return halves[:2] + s * halves[2:]

@@ -66,6 +66,7 @@ class FastFront:
     alpha: float = 0.0
 
     def __post_init__(self) -> None:
+        """Check all fields, and set the attributes that depend on them."""
         prestress = self.prestress
         check_kind("prestress", prestress, Prestress)
         check_number("gamma", self.gamma, at_least=0.0)
@@ -78,29 +79,33 @@ class FastFront:
         check_runaway(self.gamma, self.alpha)
         self.gamma, self.alpha = float(self.gamma), float(self.alpha)
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
-        self._find_features()
+        self._set_features()
+        # Without Gaussians the pre-stress is linear in each interval, so that it is lowest at an
+        # end. A Gaussian may lower it at one of its features.
         _, _, left_values, right_values = prestress.interval_table.T
-        lowest_level = np.min([left_values, right_values])
-        lowest = float(np.min(prestress(self.features), initial=lowest_level))
+        lowest_at_ends = np.min([left_values, right_values])
+        lowest = float(np.min(prestress(self.features), initial=lowest_at_ends))
         check_number("lowest prestress", lowest, at_least=MIN_PRESTRESS)
         self.pieces = split_into_pieces(prestress)
         self._piece_ends = [piece.right for piece in self.pieces]
 
-    def _find_features(self) -> None:
-        """Set the features of all Gaussians, and those of narrow Gaussians.
+    def _set_features(self) -> None:
+        """Set ``features`` and ``narrow_features``: positions in all and in narrow Gaussians.
 
-        A panel begins at each feature. Otherwise a narrow Gaussian could lie unnoticed between two
+        They are the centre of each Gaussian and positions at fixed distances from it, in widths. A
+        panel begins at each of them. Otherwise a narrow Gaussian could lie unnoticed between two
         nodes of a panel.
         """
         centres, widths = np.array(self.prestress.gaussians).reshape(-1, 2).T
         # The axes are [Gaussian, feature].
         features = centres[:, None] + widths[:, None] * FEATURE_DISTANCES
         self.features = np.unique(features)
+        # A Gaussian is narrow compared with the length over which waves change, 1/kernel_rate.
         is_narrow = (widths * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
         self.narrow_features = features[is_narrow].ravel()
 
     def mirrored(self) -> "FastFront":
-        """Return the law for the pre-stress reflected at x = 0."""
+        """Return the same front for the pre-stress reflected at x = 0."""
         profile = self.prestress
         steps = tuple((-position, level) for position, level in profile.steps)
         bumps = tuple((-centre, amplitude, width) for centre, amplitude, width in profile.bumps)
@@ -136,29 +141,31 @@ class FastFront:
     def max_panel_length(self, background: Interval) -> float:
         """Return the largest length of a panel in an interval of linear pre-stress.
 
-        The phase of the waves changes by at most MAX_PHASE along such a panel.
+        The phase of the waves changes by at most MAX_PHASE along such a panel. This phase is
+        kernel_rate times the proper length, sqrt(dx^2 - dT^2), along the front.
         """
         if self.kernel_rate == 0.0:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         # The phase changes fastest where the front is fastest, at the higher end of the interval.
         level = max(background.left_value, background.right_value)
         slowness = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
-        # sqrt(dx^2 - dT^2) per unit of x.
-        proper_length = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
-        length = min(MAX_PHASE / max(proper_length, MIN_PROPER_LENGTH), MAX_SCALED_LENGTH)
+        proper_length_per_x = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
+        length = min(MAX_PHASE / max(proper_length_per_x, MIN_PROPER_LENGTH), MAX_SCALED_LENGTH)
         return length / self.kernel_rate / self.refinement
 
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
         """Return the panels of a front that runs right from a point, and the point where they end.
 
         They end where tau turns negative, or at the position ``stop``. Otherwise they end with the
-        piece in which the front reaches the time ``until``, a little later than this time.
+        piece of pre-stress in which the front reaches the time ``until``, later than this time.
         """
         x, time = start
         panels: list[Panel] = []
+        # Beyond this position all Gaussians are 0.
         last_feature = float(np.max(self.features, initial=-np.inf))
         while x < stop and time < until:
             piece = self.piece_right_of(x)
+            # In negative pre-stress the front is slower than the waves.
             if not piece.is_above:
                 break
             end = min(stop, piece.right)
@@ -198,13 +205,15 @@ class FastFront:
         durations = half[:, 0] * (slowness @ WEIGHTS)
         times = start.time + np.concatenate([[0.0], np.cumsum(durations)])
         node_times = times[:-1, None] + (half * slowness) @ NODES_TO_INTEGRALS.T
-        fields_of_panels = x, node_times, tau * half, pairwise(edges), pairwise(times)
-        return [Panel._make(fields) for fields in zip(*fields_of_panels, strict=True)]
+        # Each of these arrays or iterators has one row for each panel: the fields of `Panel`.
+        rows_of_fields = x, node_times, tau * half, pairwise(edges), pairwise(times)
+        return [Panel._make(fields) for fields in zip(*rows_of_fields, strict=True)]
 
     def _first_edges(self, background: Interval, start: float, end: float) -> np.ndarray:
         """Return edges of panels from a start to an end, within one piece.
 
-        The panels are short enough for the waves, and one begins at every feature.
+        The panels are not longer than `max_panel_length`, and one begins at every feature (a
+        position in a Gaussian).
         """
         max_length = self.max_panel_length(background)
         if (end - start) * self.refinement > MAX_PANELS * max_length:
@@ -221,18 +230,19 @@ class FastFront:
 
     def _too_many_panels_error(self, background: Interval, distance: float) -> ValueError:
         """Return the error for a front that needs too many panels over a distance."""
-        level, gamma = background.right_value, self.gamma
+        longest = self.max_panel_length(background)
         return ValueError(
-            f"prestress: level {level!r} over a distance of {distance:g} at gamma = {gamma:g},"
-            f" damping_ratio = {self.damping_ratio:g}; allowed: fronts that stay within"
-            f" {MAX_PANELS} panels, of {self.max_panel_length(background):.3g} at most"
+            f"prestress: level {background.right_value!r} over a distance of {distance:g}, where"
+            f" the path of the front takes more than {MAX_PANELS} panels of a length of at most"
+            f" {longest:.3g} (gamma = {self.gamma:g}, damping_ratio = {self.damping_ratio:g});"
+            f" allowed: paths that take at most {MAX_PANELS} panels"
         )
 
 
 def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Panel]:
-    """Return panels with the arrival time T = slowness |x|, in uniform pre-stress tau.
+    """Return the panels between given edges of a front at constant speed, T = slowness |x|.
 
-    No panel contains x = 0 in its interior.
+    tau is the uniform pre-stress. No panel may contain x = 0 in its interior.
     """
     panels = []
     for left, right in pairwise(edges.tolist()):

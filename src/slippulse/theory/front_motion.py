@@ -39,7 +39,7 @@ class SteadyFront(NamedTuple):
 
 
 def steady_front(speed: float, damping_ratio: float, springs: float, release: str) -> SteadyFront:
-    """Return the steady front at a speed v > 1 (wave speeds).
+    """Return the steady front at a speed v > 1 (wave speeds), from the motion of single blocks.
 
     damping_ratio is beta/dx. springs is the stiffness of the leaf springs, gamma dx^2.
     """
@@ -48,26 +48,30 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
 
     count = BLOCKS_BEHIND_FRONT
     equation = _equation_of_motion(count, damping_ratio, springs)
-    # A period takes the time 1/v. Its load is the column that belongs to the constant 1.
+    # The state over a substep, and over a period, which takes the time 1/v. The last column belongs
+    # to the constant 1, so that it is the load.
     substep = expm(equation / (speed * SUBSTEPS_PER_PERIOD))
     period = np.linalg.matrix_power(substep, SUBSTEPS_PER_PERIOD)
     period_matrix, period_load = period[:-1, :-1], period[:-1, -1]
     # The shift of slips and that of velocities: each row takes the value of the row before it.
     shift = np.kron(np.eye(2), np.eye(count, k=-1))
+    # The steady state is the same after a period and a shift.
     steady_state = np.linalg.solve(np.eye(2 * count) - shift @ period_matrix, shift @ period_load)
     states = [np.append(steady_state, 1.0)]
     for _ in range(SUBSTEPS_PER_PERIOD):
         states.append(substep @ states[-1])
     slip_of_block_0 = np.array([state[0] for state in states])
     velocity_of_block_0 = np.array([state[count] for state in states])
-    # The block ahead is stuck. It is pulled by block 0 and, under rule "total", also damped by it.
-    gain = damping_ratio if release == "total" else 0.0
-    ahead = 1.0 + slip_of_block_0 + gain * velocity_of_block_0
-    # The stress is 1 at the last time, the release. This determines the pre-stress.
-    prestress = 1.0 / ahead[-1]
-    stays_stuck = np.all(prestress * ahead[:-1] < 1.0)
+    # The stress on the stuck block ahead, for the pre-stress 1. It is pulled by block 0 and, under
+    # rule "total", also dragged along by the damping force.
+    damping_in_stress = damping_ratio if release == "total" else 0.0
+    stress_ahead = 1.0 + slip_of_block_0 + damping_in_stress * velocity_of_block_0
+    # All stresses are proportional to the pre-stress, and this one is 1 at the last time, the
+    # release. This determines the pre-stress.
+    prestress = 1.0 / stress_ahead[-1]
+    stays_stuck = np.all(prestress * stress_ahead[:-1] < 1.0)
     slides = np.all(velocity_of_block_0[1:] > 0.0)
-    return SteadyFront(float(prestress), prestress * ahead, bool(stays_stuck and slides))
+    return SteadyFront(float(prestress), prestress * stress_ahead, bool(stays_stuck and slides))
 
 
 def _equation_of_motion(count: int, damping_ratio: float, springs: float) -> np.ndarray:

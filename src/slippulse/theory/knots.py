@@ -110,8 +110,8 @@ class Knots(NamedTuple):
     def has_jump(self, k: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the edge jumps or turns from fast to slow.
 
-        The edge jumps if it takes longer than a wave from one knot to the other, although it is not
-        known to be slow there.
+        The edge jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
+        although it is not known to be slow there.
         """
         duration = np.abs(self.stick[k + 1] - self.stick[k])
         length = self.x[k + 1] - self.x[k]
@@ -121,13 +121,11 @@ class Knots(NamedTuple):
         turns_slow = self.has_end_kinds(k, FASTER_THAN_WAVES, SLOWER_THAN_WAVES)
         return jumps | turns_slow
 
-    def ends_before_jumps(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the knots before the jumps in the intervals k, and the lengths of the intervals.
+    def ends_before_jumps(self, k: np.ndarray) -> np.ndarray:
+        """Return, for each interval k in which the edge jumps, the number of the knot before it.
 
-        Intervals without a jump are left out. The knot before a jump is the one that the edge
-        reaches faster than the waves.
+        This is the end of the interval that the edge reaches faster than the waves.
         """
-        k = k[self.has_jump(k)]
         left_kind, right_kind = self.kind[k], self.kind[k + 1]
         # If both knots are of one kind, it is the knot that sticks first. Otherwise it is the one
         # of the kind FASTER_THAN_WAVES.
@@ -135,7 +133,7 @@ class Knots(NamedTuple):
         is_right_knot = np.where(
             left_kind == right_kind, right_sticks_first, right_kind == FASTER_THAN_WAVES
         )
-        return np.where(is_right_knot, k + 1, k), self.x[k + 1] - self.x[k]
+        return np.where(is_right_knot, k + 1, k)
 
     def interpolate(self, k: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Return stick times at positions x in the intervals k, by Hermite's cubic polynomial."""
@@ -149,16 +147,18 @@ class Knots(NamedTuple):
         return self.stick[k] + s**2 * (3.0 - 2.0 * s) * difference + s * (1.0 - s) * weighted_slopes
 
     def predicts_middle(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
-        """Return a mask of the intervals k in which interpolation predicts the knot in the middle.
+        """Return a mask of the intervals k in which interpolation predicts a knot in the middle.
 
-        The middle has one such knot for each interval. All three knots must be of one kind. If they
-        are FASTER_THAN_WAVES, the cubic must also predict the stick time and the slope of the
-        middle. Elsewhere the cubic is not used.
+        ``middle`` has one knot for each interval, in its middle. It must be of the same kind as
+        both ends of the interval. If this kind is FASTER_THAN_WAVES, the interpolating cubic must
+        also predict the stick time and the slope of the middle. For other kinds the cubic is not
+        used.
         """
         is_one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
         half_length = middle.x - self.x[k]
         time_error = np.abs(middle.stick - self.interpolate(k, middle.x))
-        # The slope of the cubic in the middle of the interval.
+        # The slope of Hermite's cubic in the middle: 3/2 of the mean slope of the interval, minus a
+        # quarter of the sum of the slopes at its ends.
         cubic_slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half_length
         cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
         slope_error = np.abs(middle.slope - cubic_slope)

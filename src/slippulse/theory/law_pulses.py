@@ -22,7 +22,7 @@ it does not change the front speed. In the limit dx -> 0 at fixed beta/dx
 import math
 from dataclasses import dataclass
 from itertools import count
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -75,19 +75,32 @@ class SteadyRupture:
         return math.isfinite(self.width)
 
 
-class _Exponentials:
-    """Slip U(xi), xi <= 0, a sum of three exponentials and the static slip.
+class _VelocityMinimum(NamedTuple):
+    """The first minimum of slip velocity behind its peak.
 
-    It solves damping U''' + inertia U'' + stiffness U = load. start has U, U' and U'' at xi = 0.
+    bracket has the positions of the two samples around it; it is empty if there is no minimum.
+    stops_before is True if the slip stops before the minimum.
     """
+
+    bracket: np.ndarray
+    stops_before: bool
+
+
+class _LinearSlip:
+    """Slip U(xi), xi <= 0, that solves a linear equation: a sum of exponentials."""
 
     def __init__(
         self, damping: float, inertia: float, stiffness: float, load: float, start: np.ndarray
     ) -> None:
+        """Solve damping U''' + inertia U'' + stiffness U = load; start has U, U', U'' at xi = 0.
+
+        U is the static slip, load/stiffness, and a sum of three terms amplitude exp(exponent xi).
+        """
         # Exponents with a negative real part come first: they grow with the distance from xi = 0.
         self.exponents = np.sort_complex(np.roots([damping, inertia, 0.0, stiffness]))
         self.static_slip = load / stiffness
-        # Row n has the n-th powers of the exponents, the factors of the n-th derivatives at xi = 0.
+        # The n-th derivative of a term at xi = 0 is its amplitude times the n-th power of its
+        # exponent. Row n has these powers.
         powers = np.vander(self.exponents, 3, increasing=True).T
         self.amplitudes = np.linalg.solve(powers, start - np.array([self.static_slip, 0.0, 0.0]))
 
@@ -105,28 +118,29 @@ class _Exponentials:
         count = math.log(farthest / nearest) / math.log(SAMPLE_FACTOR)
         return -nearest * SAMPLE_FACTOR ** np.arange(count)
 
-    def first_velocity_minimum(self) -> tuple[np.ndarray, bool]:
-        """Return the two samples around the first minimum of slip velocity behind its peak.
+    def first_velocity_minimum(self) -> _VelocityMinimum:
+        """Return the first minimum of slip velocity behind its peak, from samples.
 
-        They are empty if there is no minimum. The flag is True if the slip stops before it. Slip
-        velocity is -v U'. So it decreases with the distance from the front where U'' < 0, and is
-        not positive where U' >= 0.
+        Slip velocity is -v U', where v is the front speed. So it decreases with the distance from
+        the front where U'' < 0, and the slip has stopped where U' >= 0.
         """
         xi = self.samples()
         curvature = self.evaluate(xi, 2)
-        is_minimum = (curvature < 0.0)[:-1] & (curvature >= 0.0)[1:]
-        minima = np.flatnonzero(is_minimum)
+        # U'' changes from negative to positive between a sample and the next one behind it.
+        minima = np.flatnonzero((curvature[:-1] < 0.0) & (curvature[1:] >= 0.0))
         first = minima[0] if minima.size else xi.size
         has_stopped = self.evaluate(xi, 1) >= 0.0
-        return xi[first : first + 2], bool(has_stopped[: first + 1].any())
+        return _VelocityMinimum(
+            bracket=xi[first : first + 2], stops_before=bool(has_stopped[: first + 1].any())
+        )
 
     def creeps_forever(self) -> bool:
         """Return True if the slip approaches the static slip from below, without end.
 
-        This needs three conditions: no part of it grows, oscillates, or lies above the static slip.
+        This needs three conditions: no exponential grows with the distance from the front or
+        oscillates, and the one that decays most slowly is negative.
         """
-        # The first exponential grows with the distance from the front. The second one decays most
-        # slowly, and decides from which side the static slip is approached.
+        # Of the exponentials, the first one grows, and the second one decays most slowly.
         growing, *decaying = np.abs(self.amplitudes)
         grows = growing > ABSENT_FRACTION * max(decaying)
         oscillates = bool(self.exponents[1:].imag.any())
@@ -136,16 +150,16 @@ class _Exponentials:
 
 def _zone_and_slip_beyond(
     v: float, tau0: float, gamma: float, beta: float, weakening: float
-) -> tuple[float, _Exponentials]:
+) -> tuple[float, _LinearSlip]:
     """Return the end xi of the weakening zone behind a front of speed v, and the slip beyond it.
 
     In the zone friction falls; it ends where the slip reaches the weakening distance d_c. Positions
-    xi of the slip beyond the zone are counted from this end. The end is NaN if the slip stops
-    inside the zone.
+    xi of the slip beyond the zone are counted from this end. If the slip stops inside the zone, the
+    end is NaN, and the slip is that in the zone.
     """
     damping, inertia = beta * v, (v - 1.0) * (v + 1.0)
     # Friction 1 - U/d_c adds -1/d_c to the stiffness and -1 to the load.
-    slip_in_zone = _Exponentials(
+    slip_in_zone = _LinearSlip(
         damping=damping,
         inertia=inertia,
         stiffness=gamma - 1.0 / weakening,
@@ -167,7 +181,7 @@ def _zone_and_slip_beyond(
     before = 0.0 if first_beyond == 0 else float(xi[first_beyond - 1])
     end = root_between(slip_to_go, float(xi[first_beyond]), before)
     start = np.array([float(slip_in_zone.evaluate(end, order)) for order in range(3)])
-    slip_beyond_zone = _Exponentials(
+    slip_beyond_zone = _LinearSlip(
         damping=damping, inertia=inertia, stiffness=gamma, load=tau0, start=start
     )
     return end, slip_beyond_zone
@@ -211,8 +225,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         )
         if math.isnan(zone_end):
             return -1.0
-        _, stops = slip_beyond_zone.first_velocity_minimum()
-        return -1.0 if stops else 1.0
+        return -1.0 if slip_beyond_zone.first_velocity_minimum().stops_before else 1.0
 
     # The speed of the slowest rupture is between the first trial speed that is too high and the
     # trial speed before.
@@ -227,12 +240,12 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     zone_end, slip_beyond_zone = _zone_and_slip_beyond(
         speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
     )
-    minimum, _ = slip_beyond_zone.first_velocity_minimum()
-    if slip_beyond_zone.creeps_forever() or not minimum.size:
+    minimum = slip_beyond_zone.first_velocity_minimum()
+    if slip_beyond_zone.creeps_forever() or not minimum.bracket.size:
         return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
     # The pulse sticks at the minimum of slip velocity, where U'' = 0. At the speed of the steady
     # rupture, slip velocity is 0 there too.
-    nearer, farther = minimum.tolist()
+    nearer, farther = minimum.bracket.tolist()
     stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
     final_slip = float(slip_beyond_zone.evaluate(stick))
     # Both positions are negative: the end of the zone, and the stick as seen from there.
@@ -275,13 +288,15 @@ def rate_pulse(
     """
     check_domains(tau0=tau0, gamma=gamma)
     if friction.friction(0.0, 0.0, *friction.kernel_parameters) != 0.0:
-        allowed = "laws that depend on slip rate alone"
+        allowed = "laws that are 0 at rest and depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
     path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
+    # The first event is the stick, and the second one a peak of slip velocity.
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
-        allowed = f"laws whose slip velocity has a peak within {MAX_HALF_PERIODS:g} half-periods"
+        limit = f"{MAX_HALF_PERIODS:g} half-periods of the leaf springs"
+        allowed = f"laws whose slip velocity has a peak within {limit}"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
     # The status is 1 if the integration ended at a terminal event.
@@ -305,12 +320,12 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
     parameters = friction.kernel_parameters
     inertia = (v - 1.0) * (v + 1.0)
     half_period = math.pi * math.sqrt(inertia / gamma)
-    evaluations = count()
+    evaluation_numbers = count()
 
     def slopes(distance: float, state: np.ndarray) -> list[float]:
         """Return the derivatives of slip and strain by the distance behind the front."""
-        if next(evaluations) == MAX_EVALUATIONS:
-            reason = f"the pulse is not found in {MAX_EVALUATIONS} evaluations"
+        if next(evaluation_numbers) == MAX_EVALUATIONS:
+            reason = f"the pulse takes more than {MAX_EVALUATIONS} evaluations of the friction law"
             allowed = "larger values, or weaker friction"
             raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
         slip, strain = state

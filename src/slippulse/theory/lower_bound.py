@@ -28,15 +28,15 @@ J0. So w > 0 if all pre-stress in the past is positive, and J0 does not reach it
 An interval is divided until the bound is positive, or until it is too short to change any result.
 """
 
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
 
 from .curve import WEIGHTS, Crossing
 from .part import Part
 from .riemann import MAX_EXPONENT, partial_weights
 
-# Points on the curve, from left to right: where the past of a begins, where that of c begins and
-# ends, and where that of b ends.
-A_BEGINS, C_BEGINS, C_ENDS, B_ENDS = range(4)
 # The square of the first zero of the Bessel function J0.
 SQUARED_FIRST_ZERO = 5.783185962946784
 # An interval whose bound is not positive is cut into this number of parts.
@@ -57,12 +57,25 @@ FAINT_VELOCITY = 1e-5
 MIN_FAINT_INTERVAL = 1e-2
 
 
-def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf) -> np.ndarray:
+class PastOnCurve(NamedTuple):
+    """Points of the curve where the past of the positions a and b, and of c, begins and ends.
+
+    The four points are in this order along the curve. Each has one element for each pair.
+    """
+
+    a_begins: Crossing
+    c_begins: Crossing
+    c_ends: Crossing
+    b_ends: Crossing
+
+
+def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.inf) -> np.ndarray:
     """Return positions that have stuck until a time, between pairs of positions that slide then.
 
-    Row 0 of x has the left positions of the pairs, and row 1 the right ones. first is the position
-    that sticks first, at this time, if it is known. The search ends at the first positions found.
-    The result is empty if nothing has stuck.
+    Row 0 of x has the left positions of the pairs, and row 1 the right ones. Each pair is cut into
+    smaller and smaller parts, until a lower bound of du/dt in between is positive. The search ends
+    at the first positions found, and the result is empty if nothing has stuck. first_x is the
+    position that sticks first, at this time, if it is known.
     """
 
     def velocity_at(x: np.ndarray) -> np.ndarray:
@@ -70,6 +83,7 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
         return part.velocity(x.ravel(), np.full(x.size, time)).reshape(x.shape)
 
     velocity = velocity_at(x)
+    # Pairs that creep so slowly that their bound is never positive.
     is_faint = velocity.max(axis=0) < FAINT_VELOCITY
     while x.size:
         both_move = velocity.min(axis=0) > ROUNDING_ERROR
@@ -78,11 +92,12 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first: float = np.inf)
         # Only pairs between which something may still have stuck are cut into parts.
         is_cut = x[1] - x[0] > min_length * part.scale
         is_cut &= ~stays_positive(part, x=x, velocity=velocity, time=time)
-        is_cut &= np.abs(x - first).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
+        is_cut &= np.abs(x - first_x).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
         # The ends of the parts and du/dt there, [end, pair]. The first and the last end are the two
         # positions of the pair.
         ends = np.linspace(x[0, is_cut], x[1, is_cut], PARTS_PER_CUT + 1)
         inner_velocity = velocity_at(ends[1:-1])
+        # Where a block has stuck before, the formula for sliding gives a negative velocity.
         has_stuck = inner_velocity < -ROUNDING_ERROR
         if np.any(has_stuck):
             return ends[1:-1][has_stuck]
@@ -101,56 +116,61 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     positions and everything in their past must slide until the time, or a front has just arrived
     there. The symbols and the two lower bounds are those of the module docstring.
     """
-    left, right = x
+    a, b = x
     curve, alpha = part.curve, part.alpha
-    distance, middle = right - left, 0.5 * (left + right)
+    distance, middle = b - a, 0.5 * (a + b)
     # The point c.
-    time_at_c = time - 0.5 * (right - left)
+    time_at_c = time - 0.5 * distance
     past_of_c = part.domains(middle, time_at_c)
     c_slides = curve.arrival(middle) < time_at_c
     k = past_of_c.stiffness
-    # Where the past of a begins on the curve, and where that of b ends.
-    a_begins, b_ends = curve.crossings(middle, time - left, time + right)
-    crossings = (a_begins, past_of_c.left, past_of_c.right, b_ends)
-    # w and F are divided by exp(alpha t/2) at the time of a and b. At c, which is half of the
-    # distance earlier, w contains a smaller exponential.
+    a_begins, b_ends = curve.crossings(middle, time - a, time + b)
+    past = PastOnCurve(a_begins, past_of_c.left, past_of_c.right, b_ends)
+    # w and F are divided by exp(alpha t/2) at the time of a and b, where w is then du/dt. At c,
+    # which is half of the distance earlier, w contains a smaller exponential.
+    w_at_a, w_at_b = velocity
+    w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
     half_exponential = 0.5 * np.exp(exponent)
-    w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
-    lost, all_lost = _integrals_of_source(
-        half_exponential * np.maximum(-curve.source, 0.0), crossings
-    )
+    # F loses by negative pre-stress and gains by positive one. These are densities along the curve.
+    loss_density = half_exponential * np.maximum(-curve.source, 0.0)
     if k > 0.0:
-        gained, _ = _integrals_of_source(
-            half_exponential * np.maximum(curve.source, 0.0), crossings
-        )
-        by_springs = k * distance**2 / 16.0 * (w_at_c + gained)
-        lower_bound = sum(velocity) - w_at_c - gained - by_springs
+        gain_density = half_exponential * np.maximum(curve.source, 0.0)
+        gain = _integral_outside_past_of_c(gain_density, past)
+        by_springs = k * distance**2 / 16.0 * (w_at_c + gain)
+        lower_bound = w_at_a + w_at_b - w_at_c - gain - by_springs
     else:
-        lower_bound = w_at_c - lost
+        lower_bound = w_at_c - _integral_outside_past_of_c(loss_density, past)
+    is_bound_positive = c_slides & (lower_bound > 0.0)
     # If c has not slipped, all pre-stress in the past must be positive, and the largest argument of
     # J0 before its first zero. This condition is sufficient also if c has slipped.
-    d_xi = time - left - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
-    d_eta = time + right - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
+    to_a_begins, to_b_ends = _integrals_from_left_end(loss_density, [a_begins, b_ends])
+    is_past_positive = to_b_ends - to_a_begins <= 0.0
+    d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
+    d_eta = time + b - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
     is_kernel_positive = k * d_xi * d_eta < SQUARED_FIRST_ZERO
-    return (c_slides & (lower_bound > 0.0)) | ((all_lost <= 0.0) & is_kernel_positive)
+    return is_bound_positive | (is_past_positive & is_kernel_positive)
 
 
-def _integrals_of_source(
-    source: np.ndarray, crossings: tuple[Crossing, Crossing, Crossing, Crossing]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return integrals of a source along the curve, for each pair: outside the past of c, and all.
+def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.ndarray:
+    """Return the integral of a density along the curve, for each pair of positions a and b.
 
-    The source is given at the nodes of the panels. The crossings are the points A_BEGINS, C_BEGINS,
-    C_ENDS and B_ENDS of the curve. The first integral is from A_BEGINS to C_BEGINS and from C_ENDS
-    to B_ENDS; the second one is from A_BEGINS to B_ENDS.
+    It covers the past of a and of b, except the past of the point c. The density is a function per
+    unit of the parameter of each panel, given at the nodes.
     """
-    panel = np.concatenate([crossing.panel for crossing in crossings])
-    s = np.concatenate([crossing.s for crossing in crossings])
-    # The integrals from the left end of the curve to each crossing, [crossing, pair].
-    by_panel = source @ WEIGHTS
+    to_a_begins, to_c_begins, to_c_ends, to_b_ends = _integrals_from_left_end(density, past)
+    return to_c_begins - to_a_begins + to_b_ends - to_c_ends
+
+
+def _integrals_from_left_end(density: np.ndarray, ends: Sequence[Crossing]) -> np.ndarray:
+    """Return the integrals of a density from the left end of the curve to several points.
+
+    The result has a row for each of the ends, and a column for each pair. The density is a function
+    per unit of the parameter of each panel, given at the nodes.
+    """
+    panel = np.concatenate([end.panel for end in ends])
+    s = np.concatenate([end.s for end in ends])
+    by_panel = density @ WEIGHTS
     before_panel = np.cumsum(by_panel) - by_panel
-    in_panel = np.sum(partial_weights(s) * source[panel], axis=-1)
-    integral = (before_panel[panel] + in_panel).reshape(4, -1)
-    outside_c = integral[C_BEGINS] - integral[A_BEGINS] + integral[B_ENDS] - integral[C_ENDS]
-    return outside_c, integral[B_ENDS] - integral[A_BEGINS]
+    in_panel = np.sum(partial_weights(s) * density[panel], axis=-1)
+    return (before_panel[panel] + in_panel).reshape(len(ends), -1)

@@ -55,7 +55,7 @@ class Part:
     def domains(self, x: np.ndarray, time: np.ndarray) -> DependenceDomains:
         """Return the domains of dependence of points (x, time) that slide.
 
-        They compute the fields there, as integrals over the past of the points.
+        This object computes the fields at the points, as integrals over the past of each point.
         """
         return DependenceDomains(
             curve=self.curve, gamma=self.gamma, alpha=self.alpha, y=x, time=time
@@ -82,7 +82,8 @@ class Part:
         """
         if not x.size:
             return np.zeros(0)
-        # The times at which waves from the marks arrive at the positions, [position, mark].
+        # The times at which waves from the marks, where the motion of a front changes suddenly,
+        # arrive at the positions. The axes are [position, mark].
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
         step = SEARCH_STEP * self.scale / self.refinement

@@ -62,9 +62,10 @@ def continued_prestress(prestress: Prestress, background: Interval, x: np.ndarra
 
 
 def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
-    """Return the pieces of a pre-stress on both sides of a value, from left to right.
+    """Return intervals on which the pre-stress is smooth and on one side of a value, in order.
 
-    A piece has no length where the pre-stress only touches the value.
+    They are cut where the background changes its slope or jumps, and where the pre-stress crosses
+    the value. A piece has no length where the pre-stress only touches the value.
     """
     # Sample positions, which are dense enough to show every sign change in a Gaussian. Between the
     # Gaussians the pre-stress is linear.
@@ -76,10 +77,11 @@ def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
     samples = np.unique(np.concatenate([[], *samples_of_gaussians]))
     pieces = []
     for background in prestress.intervals:
+        # is_above is that of the first piece. From one piece to the next the pre-stress changes to
+        # the other side of the value.
         is_above, crossings = _crossings_of_value(
             prestress, background=background, samples=samples, value=value
         )
-        # From one piece to the next the pre-stress changes to the other side of the value.
         for start, end in pairwise([background.left, *crossings, background.right]):
             pieces.append(Piece(left=start, right=end, background=background, is_above=is_above))
             is_above = not is_above
@@ -110,11 +112,12 @@ def _crossings_of_value(
     """Return a flag and the positions where tau crosses a value, in an interval of the background.
 
     The flag is True if tau >= value at the left end of the interval. A position appears twice where
-    tau only touches the value.
+    tau only touches the value. samples are sorted positions, so dense that tau crosses the value at
+    most once between two of them.
     """
     left, right = background.left, background.right
     inner_samples = samples[(samples > left) & (samples < right)]
-    # The outermost intervals are infinite. Beyond all Gaussians they are uniform, so that one
+    # The outermost intervals are infinite. Beyond all Gaussians they are uniform, so that one more
     # sample there is sufficient.
     first = left if np.isfinite(left) else min([*samples[:1], right]) - 1.0
     last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0

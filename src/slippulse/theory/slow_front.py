@@ -67,10 +67,13 @@ MAX_CHUNK_GROWTH = 4.0
 MIN_CHUNK = 1e-11
 # If a shorter remainder of a panel of entries is left, the next panel is used instead.
 MIN_REMAINDER = 1e-8
-# Entries are skipped if they move the front by less than a small fraction of the size of the
-# rupture. The first fraction is that of rounding. The larger ones are used only if the front would
-# otherwise run back, because panels do not resolve such small motions.
-NEGLIGIBLE_MOTIONS = (1e-13, 1e-12, 1e-11, 1e-10)
+# A motion of the front is a rounding error if it is smaller than this fraction of the size of the
+# rupture.
+ROUNDING_MOTION = 1e-13
+# Entries are skipped if they move the front by no more than a small fraction of the size of the
+# rupture. The larger fractions are used only if the front would otherwise run back, because panels
+# do not resolve such small motions.
+NEGLIGIBLE_MOTIONS = (ROUNDING_MOTION, 1e-12, 1e-11, 1e-10)
 # The entries to skip are determined at samples between the first entry and the left end of its
 # panel, at these fractions of the way.
 ENTRY_FRACTIONS = np.linspace(0.0, 1.0, 65)
@@ -87,12 +90,12 @@ SEARCH_DELAY = 1e-11
 EVENT_AT_START = 1e-6
 # A chunk ends at an event if the distance between the event and its last entry is below this.
 EVENT_AT_END = 1e-9
-# After more corrections of the end than this number, a larger distance is sufficient.
-MAX_EXACT_CORRECTIONS = 5
+# If the end of a chunk was moved more often than this, a larger distance is sufficient.
+MAX_EXACT_MOVES = 5
 # The larger distance.
 EVENT_NEAR_END = 1e-6
-# In a chunk that was shortened to end at an event, events are searched up to this parameter, a
-# little beyond its end at 1.
+# In a chunk whose end was moved to an event, events are searched up to this parameter, a little
+# beyond its end at 1.
 SEARCH_LIMIT = 1.2
 # The most chunks that are tried for a panel.
 MAX_CHUNKS = 60
@@ -104,12 +107,12 @@ MAX_NEWTON_STEPS = 60
 class Progress(NamedTuple):
     """State that a slow front keeps from one panel to the next.
 
-    next_length is the longest chunk to try next. last_entry is the position where the wave that
+    next_length is the longest chunk to try next. last_entry_x is the position where the wave that
     arrives at the front now entered the rupture; NaN before the first panel.
     """
 
     next_length: float = PANEL_LENGTH
-    last_entry: float = np.nan
+    last_entry_x: float = np.nan
 
 
 class Event(NamedTuple):
@@ -126,8 +129,8 @@ class Event(NamedTuple):
 class Entry(NamedTuple):
     """A point of the curve where a wave enters the rupture: its panel, and the parameter on it.
 
-    The panel is negative if no further entry moves the front on. skipped_motion is the distance
-    that the front moves by the negligible entries that were skipped before this one.
+    skipped_motion is the distance that the front moves by the negligible entries that were skipped
+    before this one, or 0 if none was skipped.
     """
 
     panel: int
@@ -135,21 +138,24 @@ class Entry(NamedTuple):
     skipped_motion: float = 0.0
 
 
+# This stands for an entry if no further entry moves the front on.
 NO_ENTRY = Entry(panel=-1, s=1.0)
 
 
-class Skipped(NamedTuple):
+class SkippedEntries(NamedTuple):
     """The entries that are skipped on a panel, because they hardly move the front.
 
-    last_sample is the number of the last skipped sample, and s is its parameter. motion is the
-    distance that the front moves by all skipped entries. moves_on is False if the entries after
-    them move the front back.
+    skips_any is False if there are none, and skips_all is True if they go on to the left end of the
+    panel. last_s is the parameter of the last one. total_motion is the distance that the front
+    moves by all entries that were skipped up to this one, on this and on other panels.
+    next_moves_on is False if the entries after them move the front back.
     """
 
-    last_sample: int
-    s: float
-    motion: float
-    moves_on: bool
+    skips_any: bool
+    skips_all: bool
+    last_s: float
+    total_motion: float
+    next_moves_on: bool
 
 
 class Advance(NamedTuple):
@@ -183,47 +189,44 @@ class Chunk(NamedTuple):
         return self._replace(stop=0.5 * (self.start + self.stop))
 
 
-def _first_event(x: np.ndarray, mark: float, corrections: int) -> Event:
+def _first_event(x: np.ndarray, mark: float, end_was_moved: bool) -> Event:
     """Return the first event of a front on a chunk of entries: it stops, or it reaches the mark.
 
-    x has the positions of the front at the nodes of the chunk. The front stops where the derivative
-    of its position by the parameter is 0. corrections is the number of times that the end of the
-    chunk was moved to an event. If it was moved, the event may lie a little beyond the end.
+    x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
+    The front stops where dx/ds is 0. If the end of the chunk was moved to an event before, this
+    event may now lie a little beyond the end, at s > 1.
     """
-    largest_s = SEARCH_LIMIT if corrections else 1.0
+    largest_s = SEARCH_LIMIT if end_was_moved else 1.0
     stops = _roots_on_chunk(NODES_TO_DERIVATIVES @ x, largest_s)
     arrivals = _roots_on_chunk(x - mark, largest_s) if np.isfinite(mark) else []
     events = [Event(s, "stop") for s in stops] + [Event(s, "mark") for s in arrivals]
     return min(events, key=lambda event: event.s, default=Event(np.inf, "none"))
 
 
-def _must_be_corrected(event: Event, corrections: int) -> bool:
-    """Return True if there is an event on a chunk of entries, but the chunk does not end there yet.
+def _ends_at_event(event: Event, move_count: int) -> bool:
+    """Return True if a chunk of entries ends close enough to the event that was found on it.
 
-    corrections is the number of times that the end of the chunk was moved to an event. It is moved
-    at least once, even if the event is at the end already. After many corrections the event may be
-    a little farther from the end.
+    move_count is the number of times that the end of the chunk was moved to an event. It is moved
+    at least once, even if the event is at the end already. If it was moved often without success,
+    a larger distance is accepted.
     """
-    if event.name == "none":
-        return False
-    has_many_corrections = corrections > MAX_EXACT_CORRECTIONS
-    tolerance = EVENT_NEAR_END if has_many_corrections else EVENT_AT_END
+    tolerance = EVENT_NEAR_END if move_count > MAX_EXACT_MOVES else EVENT_AT_END
     # The parameter s of the chunk is 1 at its end.
     distance_to_end = abs(event.s - 1.0)
-    return corrections == 0 or distance_to_end >= tolerance
+    return move_count > 0 and distance_to_end < tolerance
 
 
 def _runs_back(x: np.ndarray) -> bool:
-    """Return True if a front runs back at the start of a chunk of entries.
+    """Return True if a front runs back, to the left, at the start of a chunk of entries.
 
-    x has the positions of the front at the nodes of the chunk.
+    x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
     """
-    slope = NODES_TO_DERIVATIVES @ x
-    # The sign of the slope is examined halfway between the start, at s = -1, and the first stop of
-    # the front.
-    first_stop = min(_roots_on_chunk(slope, 1.0), default=1.0)
+    dx_ds = NODES_TO_DERIVATIVES @ x
+    # The sign of dx/ds is examined halfway between the start and the first stop of the front. It is
+    # the same on this whole way.
+    first_stop = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
     halfway = 0.5 * (first_stop - 1.0)
-    return bool(legendre.legval(halfway, NODES_TO_SERIES @ slope) < 0.0)
+    return bool(legendre.legval(halfway, NODES_TO_SERIES @ dx_ds) < 0.0)
 
 
 def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
@@ -253,86 +256,92 @@ class FreeBoundary:
     """
 
     def __init__(self, front: "SlowFront", chunk: Chunk) -> None:
+        """Compute the quantities that do not depend on the unknown positions of the front.
+
+        Each node of the chunk is an entry, and belongs to one integral over the curve, from this
+        entry to the front. d_xi, d_eta and the weights have one row for each integral, and one
+        column for each node of the curve from the panel of the entries on.
+        """
         curve, panel = front.curve, chunk.panel
         s = chunk.parameters()
         self.front = front
         # T - x at the entries. It has the same value at the front.
         self.t_minus_x = curve.evaluate("t_minus_x", np.full(NODE_COUNT, panel), s)
         # T + x at the nodes of the known curve.
-        self.t_plus_x = curve.t_plus_x[panel:].ravel()
-        # Weights, times tau, of the integrals over the known curve. An integral begins at an entry,
-        # within the panel of the entries, and covers all later panels.
+        self.known_t_plus_x = curve.t_plus_x[panel:].ravel()
+        # Weights of the integrals over the known curve, times tau. Each integral covers its panel
+        # of entries only from the entry on, and all later panels completely.
         on_entry_panel = (WEIGHTS - partial_weights(s)) * curve.source[panel]
         on_later_panels = (curve.source[panel + 1 :] * WEIGHTS).ravel()
-        self.weight = np.concatenate(
-            [on_entry_panel, np.tile(on_later_panels, (NODE_COUNT, 1))], axis=1
-        )
-        self.d_xi = self.t_minus_x[:, None] - np.append(curve.t_minus_x[panel:], self.t_minus_x)
-        # Without leaf springs and drag the kernel is 1.
-        self.has_unit_kernel = front.stiffness == front.alpha == 0.0
-        self.known_integral = self.weight.sum(axis=1) if self.has_unit_kernel else np.zeros(0)
+        self.known_weights = np.hstack([on_entry_panel, np.tile(on_later_panels, (NODE_COUNT, 1))])
+        self.known_prestress_integral = self.known_weights.sum(axis=1)
+        # The last columns belong to the nodes of the new panel.
+        t_minus_x_of_nodes = np.append(curve.t_minus_x[panel:], self.t_minus_x)
+        self.d_xi = self.t_minus_x[:, None] - t_minus_x_of_nodes
 
     def newton_step(self, x: np.ndarray) -> np.ndarray | None:
         """Return the step of Newton's method, which is to be subtracted from the positions x.
 
-        None if a front at such positions would be unstable: one of the integrals would grow if the
-        front moved farther.
+        x has the position of the front for each node of the chunk, which is an entry. The integrals
+        of tau times the kernel, from each entry to the front, must become 0. The result is None if
+        a front at x would be unstable: one of the integrals would grow if the front moved farther.
         """
-        if self.has_unit_kernel:
-            return self.newton_step_with_unit_kernel(x)
-        kernel, kernel_slope = self.kernel_and_slope(x)
-        # The integrals over the known curve, from the entries to x0.
-        known_count = self.t_plus_x.size
-        over_known = (self.weight * kernel[:, :known_count]).sum(axis=1)
-        over_known_slope = (self.weight * kernel_slope[:, :known_count]).sum(axis=1)
-        # The integrals over the new panel, from x0 to the positions, are split into two. With a
-        # kernel of 1 they are exact. With the kernel minus 1 they are computed from the nodes.
+        # The integrals of tau from the end of the known curve, x0, to the positions.
         prestress_integral, tau = self.crossed_by_front(x)
+        # Without leaf springs and drag the kernel is 1.
+        if self.front.stiffness == self.front.alpha == 0.0:
+            if not np.all(tau < 0.0):
+                return None
+            return (self.known_prestress_integral + prestress_integral) / tau
+        kernel, kernel_slope = self.kernel_and_slope(x)
+        # The integrals over the known curve, from the entries to x0, and their derivatives by the
+        # position of the front.
+        known_count = self.known_t_plus_x.size
+        over_known = (self.known_weights * kernel[:, :known_count]).sum(axis=1)
+        over_known_slope = (self.known_weights * kernel_slope[:, :known_count]).sum(axis=1)
         slope_of_integral = tau + over_known_slope
         if not np.all(slope_of_integral < 0.0):
             return None
+        # The integrals over the new panel, from x0 to the positions, are those of tau and of tau
+        # times (kernel - 1). The second ones are computed from the nodes of the new panel: this
+        # matrix integrates a function times (kernel - 1), in each row up to the node of the row.
+        integrate_kernel_minus_1 = NODES_TO_INTEGRALS * (kernel[:, known_count:] - 1.0)
         dx_ds = NODES_TO_DERIVATIVES @ x
-        # This matrix integrates a function times the kernel minus 1, in each row up to its node.
-        kernel_minus_1 = NODES_TO_INTEGRALS * (kernel[:, known_count:] - 1.0)
-        residual = over_known + prestress_integral + kernel_minus_1 @ (tau * dx_ds)
-        # The derivatives of the residual of each row by the positions at all nodes. A position
-        # changes dX/ds and tau at its node. It also changes the kernel of its own row, and that of
-        # the other rows at its node by the opposite amount.
-        by_dx_ds = (kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
-        by_tau = kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
+        integrals = over_known + prestress_integral + integrate_kernel_minus_1 @ (tau * dx_ds)
+        # The derivatives of all integrals (rows) by all positions (columns). A position changes
+        # dx/ds and tau at its node. It also changes the kernel of its own row, and that of the
+        # other rows at its node by the opposite amount.
+        by_dx_ds = (integrate_kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
+        by_tau = integrate_kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
         by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, known_count:] * (tau * dx_ds)
         derivatives = by_dx_ds + by_tau - by_kernel
         derivatives += np.diag(slope_of_integral + by_kernel.sum(axis=1))
-        return np.linalg.solve(derivatives, residual)
+        return np.linalg.solve(derivatives, integrals)
 
     def kernel_and_slope(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the kernel E J0, [row, node], and its derivative by the position X of the row.
+        """Return the kernel E J0(sqrt z) of the integrals, and its derivative by the position x.
 
-        E is the decay factor by drag. The positions of the front are x.
+        x has the positions of the front, at which the integrals end. Both results have one row for
+        each integral, and one column for each node of the known curve and of the new panel. E is
+        the decay factor exp(-alpha (d_xi + d_eta)/4) by drag, and z = k d_xi d_eta.
         """
         k, alpha = self.front.stiffness, self.front.alpha
         # T + x at the front, where T - x has its value at the entry.
         eta = self.t_minus_x + 2.0 * x
-        d_eta = eta[:, None] - np.append(self.t_plus_x, eta)
+        d_eta = eta[:, None] - np.append(self.known_t_plus_x, eta)
         z = k * self.d_xi * d_eta
+        # This function computes J0(sqrt z) (order 0), or its derivative by z (order 1).
         bessel = kernel_function(k, z, z)
         exponential = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
         kernel = exponential * bessel(0)
-        # The derivative of eta by X is 2.
+        # If x changes, d_eta changes by 2 dx. So z changes by 2 k d_xi dx, and E by -alpha/2 E dx.
         slope = 2.0 * k * exponential * bessel(1) * self.d_xi - 0.5 * alpha * kernel
         return kernel, slope
 
-    def newton_step_with_unit_kernel(self, x: np.ndarray) -> np.ndarray | None:
-        """Return the step of Newton's method if the kernel is 1; None as in `newton_step`."""
-        prestress_integral, tau = self.crossed_by_front(x)
-        if not np.all(tau < 0.0):
-            return None
-        return (self.known_integral + prestress_integral) / tau
-
     def crossed_by_front(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the integral of tau from the start x0 of the new panel to x, and tau at x.
+        """Return the integrals of tau from the start x0 of the new panel to each x, and tau at x.
 
-        x are the positions of the front.
+        x has the positions of the front.
         """
         half = 0.5 * (x - self.front.x0)
         # Quadrature nodes between the start and each position, and the position itself.
@@ -357,6 +366,7 @@ class SlowFront:
     alpha: float = 0.0
 
     def __post_init__(self) -> None:
+        """Set the stiffness k of the kernel, the end of the curve, and the size of the rupture."""
         self.stiffness = self.gamma - 0.25 * self.alpha**2
         edges = self.curve.edges
         self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
@@ -372,33 +382,36 @@ class SlowFront:
             "mark"        the new panel ends at the mark;
             "stops"       the front could only run back;
             "unknown"     the wave that arrives next comes from beyond the left end of the curve;
-            "unresolved"  the front is not resolved on any chunk.
+            "unresolved"  the front is not resolved on any chunk of entries.
         """
         if len(self.curve.panels) > MAX_PANELS:
             return Advance(None, "unresolved")
-        # If the front seems to stop, the next attempts skip more entries.
+        # Entries (points where waves entered the rupture that arrive at the front) are skipped if
+        # they move the front only by a negligible distance. If the front seems to stop, the next
+        # attempt skips more of them.
         for negligible in NEGLIGIBLE_MOTIONS:
-            entry = self.next_entry(progress.last_entry, negligible)
+            entry = self.next_entry(progress.last_entry_x, negligible)
             if entry is None:
                 return Advance(None, "unknown")
-            if entry.panel < 0:
+            if entry is NO_ENTRY:
                 return Advance(None, "stops")
-            resting = self.resting_panel(entry)
-            if resting is not None:
-                return Advance(resting, None, Progress(last_entry=self.position(entry)))
+            resting_panel = self.panel_until_arrival(entry)
+            if resting_panel is not None:
+                return Advance(resting_panel, None, Progress(last_entry_x=self.position(entry)))
             advance = self.advance_from(entry, mark, progress.next_length)
             if advance.end_reason != "stops":
                 break
         return advance
 
     def advance_from(self, entry: Entry, mark: float, next_length: float) -> Advance:
-        """Continue the front by one panel, which begins with a given entry.
+        """Continue the front by one panel, by the waves from a chunk of entries.
 
-        The longest chunk of entries that next_length allows is tried first. It is halved until its
-        solution can be used. If there is an event on it, it is changed to end at the event.
+        A chunk is a range of entries on one panel of the curve. The first entry is given. A chunk
+        of the length next_length is tried first. It is halved until its solution can be used. If
+        the front stops or reaches the mark on it, the end of the chunk is moved to this event.
         """
         last_s = max(entry.s - next_length, -1.0)
-        chunk, corrections = Chunk(entry.panel, entry.s, last_s), 0
+        chunk, move_count = Chunk(entry.panel, entry.s, last_s), 0
         for _ in range(MAX_CHUNKS):
             if chunk.start - chunk.stop < MIN_CHUNK:
                 return self.straight_to_mark(mark)
@@ -409,126 +422,136 @@ class SlowFront:
                 # This close to a mark the front may run back only because of rounding.
                 x = None
             if x is None:
-                chunk, corrections = chunk.half(), 0
+                chunk, move_count = chunk.half(), 0
                 continue
-            event = _first_event(x, mark, corrections)
-            if _must_be_corrected(event, corrections):
+            event = _first_event(x, mark, end_was_moved=move_count > 0)
+            if event.name != "none" and not _ends_at_event(event, move_count):
                 # Beyond an event the solution may be meaningless. So the chunk is solved again with
                 # its end at the event.
                 chunk = chunk._replace(stop=float(chunk.parameters(np.array(event.s))))
-                corrections += 1
+                move_count += 1
             elif np.any(np.diff(x, prepend=self.x0) <= 0.0):
                 # Where the equation hardly depends on the position of the front, rounding may put
                 # the front behind its start.
-                chunk, corrections = chunk.half(), 0
+                chunk, move_count = chunk.half(), 0
             else:
                 return self.advance_along(chunk, x, event, mark)
         return Advance(None, "unresolved")
 
     def advance_along(self, chunk: Chunk, x: np.ndarray, event: Event, mark: float) -> Advance:
-        """Return the panel with positions x at the nodes of a solved chunk that ends at an event.
+        """Return the new panel for a solved chunk of entries, and the state for the next panel.
 
-        If there was no event, the chunk that is tried next may be longer.
+        x has the positions of the front at the nodes of the chunk. The chunk ends at the event: the
+        front stops, or it reaches the mark. The name of the event is "none" if there is none.
         """
         reaches_mark = event.name == "mark"
         x_end = mark if reaches_mark else float(NODES_TO_ENDS[1] @ x)
+        panel = self.panel_of_chunk(chunk, x, x_end)
         next_length = PANEL_LENGTH
+        # A chunk that ends within its panel of entries, but not at an event, was too long at first.
         if event.name == "none" and chunk.stop != -1.0:
             next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
-        progress = Progress(next_length, self.position(Entry(chunk.panel, chunk.stop)))
-        return Advance(
-            self.panel_of_chunk(chunk, x, x_end), "mark" if reaches_mark else None, progress
-        )
+        last_entry_x = self.position(Entry(chunk.panel, chunk.stop))
+        end_reason = "mark" if reaches_mark else None
+        return Advance(panel, end_reason, Progress(next_length, last_entry_x))
 
     def tau(self, x: np.ndarray) -> np.ndarray:
         """Return the pre-stress at positions ahead of the front."""
         return continued_prestress(self.prestress, self.background, x)
 
-    def next_entry(self, last_entry: float, negligible: float) -> Entry | None:
-        """Return where the wave entered the rupture that moves the front next; None if unknown.
+    def next_entry(self, last_entry_x: float, negligible: float) -> Entry | None:
+        """Return the entry on the curve from which the wave comes that moves the front next.
 
-        This entry follows the last one, whose position is given, along the curve from right to
-        left. Entries are skipped as long as all of them together move the front by no more than the
-        fraction ``negligible`` of the size of the rupture.
+        It follows the last entry, at the position last_entry_x, along the curve from right to left.
+        Entries are skipped as long as all of them together move the front by no more than the
+        fraction ``negligible`` of the size of the rupture. NO_ENTRY is returned if no entry moves
+        the front on, and None if the wave comes from beyond the left end of the curve.
         """
         # The entry could also be found from its value of T - x. But where the pre-stress is nearly
         # 0, T - x is constant to rounding, and the search would fail.
-        entry = self.entry_next_to(last_entry)
+        entry = self.entry_left_of(last_entry_x)
         skipped_motion, has_skipped = 0.0, False
-        # The panels are examined one after another. The search ends at a panel of the slow front
-        # itself, since an entry behind it is found in another way.
+        # The panels are examined one after another, up to the first panel of the slow front itself.
+        # An entry behind such a panel is found in another way.
         while entry.panel >= 0 and not self.is_slow_to_right(entry.panel):
-            skipped = self.skip_entries(entry, skipped_motion, negligible)
-            skipped_motion = skipped.motion
-            has_skipped = has_skipped or skipped.last_sample > 0
-            if skipped.last_sample < ENTRY_FRACTIONS.size - 1:
-                if not has_skipped:
-                    return Entry(int(entry.panel), skipped.s)
-                if not skipped.moves_on:
-                    return NO_ENTRY
-                motion = max(skipped_motion, self.min_motion)
-                return Entry(int(entry.panel), skipped.s, motion)
-            entry = Entry(entry.panel - 1, 1.0)
+            skipped = self.entries_to_skip(entry, skipped_motion, negligible)
+            skipped_motion = skipped.total_motion
+            has_skipped = has_skipped or skipped.skips_any
+            if skipped.skips_all:
+                entry = Entry(entry.panel - 1, 1.0)
+            elif not has_skipped:
+                return Entry(int(entry.panel), skipped.last_s)
+            elif not skipped.next_moves_on:
+                return NO_ENTRY
+            else:
+                # The motion must be positive, since a motion of 0 means that nothing was skipped.
+                min_motion = 0.1 * ROUNDING_MOTION * self.size
+                return Entry(int(entry.panel), skipped.last_s, max(skipped_motion, min_motion))
         if entry.panel >= 0:
             return self.entry_behind_slow_front()
         return NO_ENTRY if has_skipped else None
 
-    def entry_next_to(self, last_entry: float) -> Entry:
-        """Return the point of the curve that follows the position of the last entry on its left.
+    def entry_left_of(self, last_entry_x: float) -> Entry:
+        """Return the point of the curve that follows the last entry on its left.
 
-        It is the right end of the curve if there was no entry yet (NaN).
+        last_entry_x is the position of the last entry. If it is NaN, there was no entry yet, and
+        the result is the right end of the curve.
         """
-        if not np.isfinite(last_entry):
-            return Entry(len(self.curve.panels) - 1, 1.0)
-        (panel,), (s,) = self.curve.locate(np.array([last_entry]))
-        # A remainder of the panel that is as small as rounding errors cannot be resolved.
-        return Entry(panel, s) if s + 1.0 >= MIN_REMAINDER else Entry(panel - 1, 1.0)
+        if not np.isfinite(last_entry_x):
+            return Entry(len(self.curve.panels) - 1, s=1.0)
+        (panel,), (s,) = self.curve.locate(np.array([last_entry_x]))
+        # If nearly nothing of the panel is left, from s down to its left end at -1, the next panel
+        # is used. Such a small remainder cannot be resolved.
+        return Entry(panel, s) if s + 1.0 >= MIN_REMAINDER else Entry(panel - 1, s=1.0)
 
-    def skip_entries(self, entry: Entry, skipped_motion: float, negligible: float) -> Skipped:
+    def entries_to_skip(
+        self, entry: Entry, skipped_motion: float, negligible: float
+    ) -> SkippedEntries:
         """Return the entries to skip on a panel, from a given one to the left.
 
         Entries are skipped as long as all of them together move the front by no more than the
         fraction ``negligible`` of the size of the rupture. skipped_motion is the motion by entries
         on other panels that were skipped before.
         """
-        # The entries are sampled from the given one to the left end of its panel. A motion is that
-        # by all entries up to a sample.
+        # The entries are sampled from the given one (sample 0) to the left end of its panel, at
+        # s = -1. motions has the motion of the front by all entries up to each sample.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
         motions = skipped_motion + self.motion_by_entries(entry.panel, s)
         # Only entries in negative pre-stress can move the front back. On a panel with such entries
-        # a motion is negligible only if it is as small as rounding errors.
+        # a motion is negligible only if it is a rounding error.
         is_negative = bool(np.min(self.curve.source[entry.panel]) < 0.0)
-        largest_motion = self.size * (NEGLIGIBLE_MOTIONS[0] if is_negative else negligible)
+        largest_motion = self.size * (ROUNDING_MOTION if is_negative else negligible)
         is_negligible = np.abs(motions) <= largest_motion
-        # The first sample whose motion is too large, or the number of samples if there is none.
-        first_too_large = motions.size if is_negligible.all() else int(np.argmin(is_negligible))
-        # The last skipped sample is the one before it, but at least the first, the entry itself.
-        last = max(0, first_too_large - 1)
-        motion = float(motions[last])
-        moves_on = True
-        if is_negative and last + 1 < motions.size:
-            # The entries that follow move the front back if they reduce the motion.
-            moves_on = bool(motions[last + 1] >= motion)
-        return Skipped(last, s=float(s[last]), motion=motion, moves_on=moves_on)
+        last = s.size - 1
+        if not is_negligible.all():
+            # The sample before the first one whose motion is too large, but at least sample 0.
+            last = max(0, int(np.argmin(is_negligible)) - 1)
+        skips_all = last == s.size - 1
+        # The front moves on if the next sample has no smaller motion than the last skipped one.
+        next_moves_on = True
+        if is_negative and not skips_all:
+            next_moves_on = bool(motions[last + 1] >= motions[last])
+        return SkippedEntries(
+            skips_any=last > 0,
+            skips_all=skips_all,
+            last_s=float(s[last]),
+            total_motion=float(motions[last]),
+            next_moves_on=next_moves_on,
+        )
 
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
         """Return how far the front moves by the waves that entered on a part of a panel.
 
-        The part goes from the first of the parameters to each of them. The motion times the
-        resistance of the front is the integral of the pre-stress over this part.
+        The part goes from the first of the parameters to each of them. The integral of the
+        pre-stress over this part is the motion times the size of tau ahead of the front.
         """
         weights = partial_weights(parameters)
-        return (weights[0] - weights) @ self.curve.source[panel] / self.resistance
+        return (weights[0] - weights) @ self.curve.source[panel] / self.abs_tau_ahead
 
     @property
-    def min_motion(self) -> float:
-        """The smallest motion of the front that is taken into account, below rounding errors."""
-        return 0.1 * NEGLIGIBLE_MOTIONS[0] * self.size
-
-    @property
-    def resistance(self) -> float:
-        """Size of the negative pre-stress immediately ahead of the front."""
-        x_ahead = self.x0 + NEGLIGIBLE_MOTIONS[0] * self.size
+    def abs_tau_ahead(self) -> float:
+        """Absolute value of the (negative) pre-stress immediately ahead of the front."""
+        x_ahead = self.x0 + ROUNDING_MOTION * self.size
         return abs(float(self.tau(np.array(x_ahead))))
 
     def position(self, entry: Entry) -> float:
@@ -540,63 +563,72 @@ class SlowFront:
         panel, s = np.array([entry.panel]), np.array([entry.s])
         return float(self.curve.evaluate(name, panel, s, order)[0])
 
-    def resting_panel(self, entry: Entry) -> Panel | None:
-        """Return a panel on which the front hardly moves until the wave from an entry arrives.
+    def panel_until_arrival(self, entry: Entry) -> Panel | None:
+        """Return a panel for the time in which the front waits for the wave from an entry.
 
-        It is None if no entry was skipped, or if the wave has arrived already.
+        On this panel the front is moved by the entries that were skipped before this one, by a
+        negligible distance. None if no entry was skipped, or if the wave has arrived already.
         """
         # T - x does not change along the wave.
         t_minus_x = self.value_at("t_minus_x", entry)
         x_end = self.x0 + entry.skipped_motion
         time_end = t_minus_x + x_end
-        has_arrived = time_end - self.t0 < NEGLIGIBLE_MOTIONS[0] * self.size
+        has_arrived = time_end - self.t0 < ROUNDING_MOTION * self.size
         if entry.skipped_motion == 0.0 or has_arrived:
             return None
+        # x and T grow linearly with the parameter of the panel, which runs from -1 to 1. The source
+        # is tau dx/ds, and dx/ds is half of the motion.
         return Panel(
             x=self.x0 + 0.5 * (x_end - self.x0) * (1.0 + NODES),
             time=self.t0 + 0.5 * (time_end - self.t0) * (1.0 + NODES),
-            source=np.full(NODE_COUNT, -0.5 * self.resistance * entry.skipped_motion),
+            source=np.full(NODE_COUNT, -0.5 * self.abs_tau_ahead * entry.skipped_motion),
             x_ends=(self.x0, x_end),
             time_ends=(self.t0, time_end),
         )
 
     def is_slow_to_right(self, panel: int) -> bool:
-        """Return True if a panel belongs to a front that runs right, slower than the waves."""
-        start_time, end_time = self.curve.edge_times[panel : panel + 2]
+        """Return True if a panel belongs to a front that runs right, slower than the waves.
+
+        Such a front arrives later at the right end than at the left one, and the pre-stress is
+        negative.
+        """
+        left_time, right_time = self.curve.edge_times[panel : panel + 2]
         # The source, tau dx/ds, is negative where the pre-stress is.
-        return bool(end_time > start_time and np.sum(self.curve.source[panel]) < 0.0)
+        return bool(right_time > left_time and np.sum(self.curve.source[panel]) < 0.0)
 
     def entry_behind_slow_front(self) -> Entry | None:
-        """Return the next entry if the last one is at a slow part of the front; None if unknown.
+        """Return the next entry if the last one is on a panel of the slow front itself.
 
         The wave that arrives at the front now, and one that arrives slightly later, are traced back
-        to the curve. The later one enters on the panel of the next entries. The other one may enter
-        on the panel before it.
+        to the curve. The later one enters on the panel of the next entries. The other one may still
+        enter on the panel before it. The result is None if the later one comes from beyond the end
+        of the curve.
         """
-        xi_now = self.t0 - self.x0
-        delay = SEARCH_DELAY * max(self.size, abs(xi_now))
-        xi = np.array([xi_now, xi_now + delay])
+        t_minus_x = self.t0 - self.x0
+        delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))
+        xi = np.array([t_minus_x, t_minus_x + delay])
         entries, _ = self.curve.crossings(y=np.full(2, self.x0), xi=xi, eta=xi + 2.0 * self.x0)
         if not entries.meets_curve[1]:
             return None
         panel_now, panel = entries.panel.tolist()
         s_now, s_later = entries.s.tolist()
-        # Because of the delay, the entries between an entry near the right end of the panel and
-        # this end would be lost. So it is moved to the end.
-        columns = self.curve.columns("t_minus_x", entries.panel)
-        _, xi_at_right_end = self.curve.end_values[1, columns].tolist()
-        if abs(xi_at_right_end - xi_now) < 10.0 * delay:
-            return Entry(panel, 1.0)
+        # If the wave enters next to the right end of the panel, the entry is moved to this end.
+        # Otherwise the entries in between would be lost, because of the delay.
+        right_end = self.curve.panels[panel].end
+        if abs(right_end.time - right_end.x - t_minus_x) < 10.0 * delay:
+            return Entry(panel, s=1.0)
         s = s_now if panel_now == panel else s_later
-        # A remainder of the panel that is as small as rounding errors cannot be resolved.
+        # If nearly nothing of the panel is left, from s down to its left end at -1, the next panel
+        # is used. Such a small remainder cannot be resolved.
         if s + 1.0 < MIN_REMAINDER and panel > 0:
-            return Entry(panel - 1, 1.0)
+            return Entry(panel - 1, s=1.0)
         return Entry(panel, s)
 
     def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Return the positions of the front at the nodes of a chunk of entries, by Newton's method.
 
-        It is None if the chunk is too long, so that the method fails or its result is not resolved.
+        It is None if the chunk is too long, so that the method fails, or so that the Legendre
+        series of the result does not fall below SERIES_TOLERANCE.
         """
         equation = FreeBoundary(self, chunk)
         x, change = self.first_guess(chunk), np.inf
@@ -624,36 +656,38 @@ class SlowFront:
     def first_guess(self, chunk: Chunk) -> np.ndarray:
         """Return the positions of the front at the nodes of a chunk as if gamma were 0.
 
-        Without leaf springs the integral of tau from the entry to the front is 0. So the front
-        moves right by -(tau at the entry)/(tau at the front) times the motion of the entry to the
-        left.
+        Without leaf springs (gamma = 0) the integral of tau from the entry to the front is 0. So
+        the front moves right by -(tau at the entry)/(tau at the front) times the distance from the
+        first entry of the chunk to the left. The ratio is kept between 0.001 and 10.
         """
-        start = Entry(chunk.panel, chunk.start)
-        prestress_at_entry = self.value_at("source", start) / self.value_at("x", start, order=1)
-        prestress_at_front = float(self.tau(np.array(self.x0)))
+        first_entry = Entry(chunk.panel, chunk.start)
+        # The source is tau dx/ds.
+        dx_ds = self.value_at("x", first_entry, order=1)
+        tau_at_entry = self.value_at("source", first_entry) / dx_ds
+        tau_at_front = float(self.tau(np.array(self.x0)))
         ratio = 1.0
-        if prestress_at_front < -1e-6 and prestress_at_entry > 0.0:
-            ratio = prestress_at_entry / -prestress_at_front
-        entries = self.curve.evaluate("x", np.full(NODE_COUNT, chunk.panel), chunk.parameters())
-        return self.x0 + min(max(ratio, 1e-3), 10.0) * (self.position(start) - entries)
+        if tau_at_front < -1e-6 and tau_at_entry > 0.0:
+            ratio = min(max(tau_at_entry / -tau_at_front, 1e-3), 10.0)
+        entries_x = self.curve.evaluate("x", np.full(NODE_COUNT, chunk.panel), chunk.parameters())
+        return self.x0 + ratio * (self.position(first_entry) - entries_x)
 
     def panel_of_chunk(self, chunk: Chunk, x: np.ndarray, x_end: float) -> Panel:
-        """Return the new panel of the curve for a chunk, with positions x at its nodes.
+        """Return the new panel of the curve for a solved chunk of entries.
 
-        The panel ends at x_end.
+        x has the positions of the front at the nodes of the chunk, and x_end is the position at its
+        end. The times follow from T - x, which is the same at the front as at the entry.
         """
         nodes_and_end = np.append(chunk.parameters(), chunk.stop)
-        # T - x is the same at the front as at the entry.
-        t_minus_x = self.curve.evaluate(
-            "t_minus_x", np.full(NODE_COUNT + 1, chunk.panel), nodes_and_end
-        )
+        panel_of_entries = np.full(nodes_and_end.size, chunk.panel)
+        t_minus_x = self.curve.evaluate("t_minus_x", panel_of_entries, nodes_and_end)
+        # The source of a panel is tau dx/ds.
         source = self.tau(x) * (NODES_TO_DERIVATIVES @ x)
-        # Rounding and skipped entries leave a gap between x0 and the start of the computed
-        # positions. If it is larger than rounding errors, its pre-stress is added to the panel.
-        # Otherwise all later panels would have a gap too, and a larger one where tau is nearer
-        # to 0.
+        # Rounding and skipped entries leave a gap between the end of the known curve, x0, and the
+        # start of the computed positions. If it is larger than rounding errors, the integral of tau
+        # over the gap is added to the panel, evenly over its parameter range of length 2. Otherwise
+        # all later panels would have a gap too, and a larger one where tau is nearer to 0.
         gap = float(NODES_TO_ENDS[0] @ x) - self.x0
-        if abs(gap) > NEGLIGIBLE_MOTIONS[0] * self.size:
+        if abs(gap) > ROUNDING_MOTION * self.size:
             source += 0.5 * gap * self.tau(np.array(self.x0))
         return Panel(
             x=x,
@@ -664,21 +698,20 @@ class SlowFront:
         )
 
     def straight_to_mark(self, mark: float) -> Advance:
-        """Continue the front up to a near mark at the wave speed.
+        """Continue the front at the wave speed, which is 1, to a near end of negative pre-stress.
 
-        This is used if no chunk is resolved, as it happens where tau rises to 0 at the mark. If the
-        mark is not near, the result is "unresolved".
+        This end is the mark. The front cannot be resolved just before a mark where tau rises to 0.
+        If the mark is not near, no panel is returned, and the reason "unresolved".
         """
         if mark - self.x0 > MARK_DISTANCE * self.size:
             return Advance(None, "unresolved")
         half = 0.5 * (mark - self.x0)
         x = self.x0 + half * (1.0 + NODES)
-        x_ends, time_ends = (self.x0, mark), (self.t0, self.t0 + 2.0 * half)
         panel = Panel(
             x=x,
             time=self.t0 + x - self.x0,
             source=self.tau(x) * half,
-            x_ends=x_ends,
-            time_ends=time_ends,
+            x_ends=(self.x0, mark),
+            time_ends=(self.t0, self.t0 + 2.0 * half),
         )
         return Advance(panel, "mark")

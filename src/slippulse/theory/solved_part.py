@@ -36,13 +36,13 @@ class SolvedPart(PartWithEdge):
     _last_stick_times: np.ndarray = np.empty(0)
 
     def stick_time(self, x: np.ndarray) -> np.ndarray:
-        """Return the stick times of positions.
+        """Return the stick times of positions, which are kept for the next call.
 
         NaN outside of the part, and where a block does not stick before the end.
         """
         if not np.array_equal(x, self._last_positions):
             times, is_covered = np.full(x.shape, np.nan), self.curve.covers(x)
-            times[is_covered] = self._stick_time(x[is_covered])
+            times[is_covered] = self._exact_stick_time(x[is_covered])
             self._last_positions, self._last_stick_times = x, times
         return self._last_stick_times
 
@@ -71,6 +71,7 @@ class SolvedPart(PartWithEdge):
         sliding time, and from there to its end. This end is the stick, or the horizon if it is
         earlier. horizon(x) is the time up to which the slip at x is known.
         """
+        # One knot in each cell of this length is checked.
         cell = np.floor(self.knots.x / (CHECK_DISTANCE * self.scale))
         _, first_of_cell = np.unique(cell, return_index=True)
         x = self.knots.x[first_of_cell]
@@ -97,7 +98,8 @@ class SolvedPart(PartWithEdge):
         x = self._positions_for_peaks()
         velocity = peak_velocity(x)
         largest = float(velocity.max())
-        # Since the grid is coarse, the highest sample need not be at the highest peak.
+        # Since the grid is coarse, the highest sample need not be at the highest peak. A peak is
+        # higher than its neighbours; beyond the grid there is a 0.
         padded = np.pad(velocity, 1)
         is_peak = (velocity > padded[:-2]) & (velocity >= padded[2:])
         peaks = np.flatnonzero(is_peak & (velocity >= PEAK_FRACTION * largest))
@@ -114,21 +116,26 @@ class SolvedPart(PartWithEdge):
         return largest
 
     def _positions_for_peaks(self) -> np.ndarray:
-        """Return the positions of the knots, with POSITIONS_PER_KNOT - 1 more between two knots."""
+        """Return the positions of the knots, and equally spaced ones between each two of them.
+
+        For each knot there are POSITIONS_PER_KNOT positions. Knots that are very close to the one
+        before are left out.
+        """
         knots = self.knots.x
         knots = knots[np.diff(knots, prepend=-np.inf) > MIN_KNOT_DISTANCE * self.scale]
+        # Positions are interpolated as a function of the number of the knot.
         last = knots.size - 1
-        fractional_index = np.linspace(0.0, last, POSITIONS_PER_KNOT * last + 1)
-        return np.interp(fractional_index, np.arange(knots.size), knots)
+        fractional_number = np.linspace(0.0, last, POSITIONS_PER_KNOT * last + 1)
+        return np.interp(fractional_number, np.arange(knots.size), knots)
 
-    def _peak_velocity(self, x: np.ndarray, last: np.ndarray) -> np.ndarray:
-        """Return the largest slip velocity of each position before its stick and a last time.
+    def _peak_velocity(self, x: np.ndarray, last_time: np.ndarray) -> np.ndarray:
+        """Return the largest slip velocity of each position until its stick, or until a last time.
 
-        The velocity is sampled at GRID_SIZE times. Next to the largest sample, the peak is searched
-        where the acceleration is 0.
+        The velocity is sampled at GRID_SIZE times. Between the samples before and after the largest
+        one, the peak is at the time at which the acceleration is 0.
         """
         release = self.curve.arrival(x)
-        end = np.minimum(self.approximate_stick_time(x), last)
+        end = np.minimum(self.approximate_stick_time(x), last_time)
         # The axes are [position, time].
         time = np.linspace(release, np.maximum(release, end), GRID_SIZE, axis=1)
         velocity = self.velocity(np.repeat(x, GRID_SIZE), time.ravel()).reshape(time.shape)
@@ -136,15 +143,16 @@ class SolvedPart(PartWithEdge):
         time_before = time[row, np.maximum(column - 1, 0)]
         time_after = time[row, np.minimum(column + 1, GRID_SIZE - 1)]
 
-        def acceleration(time: np.ndarray, row: np.ndarray) -> np.ndarray:
-            """Return the slip acceleration at times, for the positions of some rows."""
+        def acceleration(row: np.ndarray, time: np.ndarray) -> np.ndarray:
+            """Return the slip acceleration at the positions of some rows, each at a time."""
             by_xi, by_eta = self.domains(x[row], time).velocity_slopes()
+            # At a fixed position, xi = t - x and eta = t + x grow as t does.
             return by_xi + by_eta
 
-        at_before, at_after = acceleration(time_before, row), acceleration(time_after, row)
+        at_before, at_after = acceleration(row, time_before), acceleration(row, time_after)
         with_peak = np.flatnonzero((at_before > 0.0) & (at_after < 0.0))
         peak_time = roots_between(
-            lambda time, k: acceleration(time, with_peak[k]),
+            lambda time, k: acceleration(with_peak[k], time),
             lower=time_before[with_peak],
             upper=time_after[with_peak],
             at_lower=at_before[with_peak],

@@ -33,6 +33,8 @@ REASONS_UNKNOWN = {
     "positive_prestress": "a front stops where the pre-stress is positive",
 }
 REASON_OVERRUN = "a front arrives where another one has stopped"
+# Reasons of `SlowFront.next_panel` for which a front is not followed further.
+END_REASONS = ("stops", *REASONS_UNKNOWN)
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
 # Where two fronts meet, the speed of each is judged over this last distance. At the wave speed, 1,
 # a front takes a time of the same size for it; a slow front takes longer.
@@ -70,9 +72,13 @@ class Stretch:
     curves: dict[float, Curve] = field(default_factory=dict)
 
     def curve(self, side: float = RIGHT) -> Curve:
-        """Return the panels as one curve, with a side turned to the right."""
+        """Return the panels as one curve, with a side turned to the right.
+
+        If the left side is turned to the right, the curve is the mirror image at x = 0.
+        """
         if side not in self.curves:
             self.curves[side] = Curve(turned_to_right(side, self.panels))
+        # Mirroring exchanges left and right, and changes the sign of positions.
         left_restarts = [side * x for x in self.restarts[-side]]
         right_restarts = [side * x for x in self.restarts[side]]
         return self.curves[side].with_restarts((left_restarts, right_restarts))
@@ -80,7 +86,8 @@ class Stretch:
     def add(self, side: float, panels: list[Panel], end: Point) -> None:
         """Append panels to the front on one side.
 
-        The panels, and the point where they end, are given with this side turned to the right.
+        The panels, and the point where they end, are given with this side turned to the right: for
+        the left side they are mirrored at x = 0.
         """
         new_panels = turned_to_right(side, panels)
         self.panels = self.panels + new_panels if side > 0.0 else new_panels + self.panels
@@ -114,19 +121,21 @@ class Stretch:
         self.restarts[side] = [start for start in self.restarts[side] if side * start < x_of_cut]
 
 
-def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
-    """Return the connected parts of the rupture at a time, from left to right.
+def spread(fast_front: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Point, str]]]:
+    """Let all fronts run until a time, and return the connected parts of the rupture in order.
 
-    Also return the points in whose future the rupture is unknown, each with its reason.
+    fast_front has the pre-stress and the law of motion of fast fronts. Also return the points in
+    whose future the rupture is unknown, each with its reason.
     """
-    laws = {RIGHT: law, LEFT: law.mirrored()}
-    stretches = _nucleate(law)
+    fast_fronts = {RIGHT: fast_front, LEFT: fast_front.mirrored()}
+    stretches = _nucleate(fast_front)
     for stretch, side in product(stretches, SIDES):
-        _advance_fast_front(laws[side], stretch=stretch, side=side, until=until)
+        _advance_fast_front(fast_fronts[side], stretch=stretch, side=side, until=until)
     stretches = _join_met_stretches(stretches)
+    # From here on, the fronts that still move are slow.
     while (front := _earliest_moving_front(stretches)) is not None:
         stretch, side = front
-        _advance_slow_front(laws[side], stretch=stretch, side=side, until=until)
+        _advance_slow_front(fast_fronts[side], stretch=stretch, side=side, until=until)
         stretches = _join_met_stretches(stretches)
     unknown = []
     for stretch, side in product(stretches, SIDES):
@@ -140,61 +149,67 @@ def spread(law: FastFront, until: float) -> tuple[list[Stretch], list[tuple[Poin
 def _earliest_moving_front(stretches: list[Stretch]) -> tuple[Stretch, float] | None:
     """Return the stretch and the side of the front to advance next; None if no front moves.
 
-    The front whose known path ends first comes first, since each depends on what the others did
-    before.
+    Of all fronts that still move, it is the one whose known path ends first, because each front
+    depends on what the others did before.
     """
-    fronts = product(stretches, SIDES)
-    moving = [(stretch, side) for stretch, side in fronts if stretch.end_reason[side] is None]
-    return min(moving, key=lambda front: front[0].ends[front[1]].time, default=None)
+    earliest_front, earliest_time = None, np.inf
+    for stretch, side in product(stretches, SIDES):
+        is_moving = stretch.end_reason[side] is None
+        if is_moving and stretch.ends[side].time < earliest_time:
+            earliest_front, earliest_time = (stretch, side), stretch.ends[side].time
+    return earliest_front
 
 
 def _cut_overrunning_fronts(stretches: list[Stretch]) -> list[tuple[Point, str]]:
-    """End each front where the front of a neighbour has stopped, if it has run beyond this point.
+    """Cut each front that has run beyond the point where the front of a neighbour has stopped.
 
-    Its motion beyond the point is unknown. Return these points, each with the reason.
+    Its motion beyond this point is unknown. Return the points of the cuts, each with the reason.
     """
     unknown = []
-    for (left, right), side in product(pairwise(stretches), SIDES):
-        # A front that runs to the left belongs to the right one of two neighbours.
-        stopped, arriving = (left, right) if side == LEFT else (right, left)
-        x = stopped.ends[-side].x
-        if arriving.panels and side * arriving.ends[side].x > side * x:
-            arriving.cut(side, x)
-            arriving.end_reason[side] = "met"
-            unknown.append((arriving.ends[side], REASON_OVERRUN))
+    for left, right in pairwise(stretches):
+        # First the left front of the right stretch may have run over the end of the left stretch.
+        # Then the right front of the left stretch may have run over the end of the right stretch.
+        for arriving, side, neighbour in ((right, LEFT, left), (left, RIGHT, right)):
+            # The front of the neighbour runs to the opposite side.
+            x = neighbour.ends[-side].x
+            if arriving.panels and side * arriving.ends[side].x > side * x:
+                arriving.cut(side, x)
+                arriving.end_reason[side] = "met"
+                unknown.append((arriving.ends[side], REASON_OVERRUN))
     return unknown
 
 
-def _nucleate(law: FastFront) -> list[Stretch]:
+def _nucleate(fast_front: FastFront) -> list[Stretch]:
     """Return one stretch for each interval that is released at t = 0."""
-    nucleations = nucleation_intervals(law.prestress)
+    nucleations = nucleation_intervals(fast_front.prestress)
     if not nucleations:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
-    lefts, rights = zip(*nucleations, strict=True)
-    # The nearest ends of the neighbouring intervals, infinite where there is no neighbour.
-    ends_before, starts_after = (-np.inf, *rights[:-1]), (*lefts[1:], np.inf)
-    intervals = zip(lefts, rights, ends_before, starts_after, strict=True)
+    # The first and the last interval have a neighbour at infinity.
+    with_neighbours = [(-np.inf, -np.inf), *nucleations, (np.inf, np.inf)]
     stretches = []
-    for left, right, end_before, start_after in intervals:
+    for number, (left, right) in enumerate(nucleations, start=1):
+        _, end_before = with_neighbours[number - 1]
+        start_after, _ = with_neighbours[number + 1]
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
         # A position on the left, turned to the right, has the opposite sign.
         stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
             # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
-            panels, _ = law.panels_to_right(Point(left, 0.0), right, np.inf)
+            panels, _ = fast_front.panels_to_right(Point(left, 0.0), right, np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         stretches.append(stretch)
     return stretches
 
 
-def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Advance a front while it is faster than the waves, up to the next nucleation point.
+def _advance_fast_front(fast_front: FastFront, stretch: Stretch, side: float, until: float) -> None:
+    """Advance the front on one side of a stretch while it is faster than the waves.
 
-    law belongs to the pre-stress with this side turned to the right.
+    It runs at most up to the next nucleation point, or until a time. fast_front belongs to the
+    pre-stress with this side turned to the right: for the left side it is mirrored at x = 0.
     """
     start, stop = stretch.ends[side], stretch.next_start[side]
-    panels, end = law.panels_to_right(Point(side * start.x, start.time), stop, until)
+    panels, end = fast_front.panels_to_right(Point(side * start.x, start.time), stop, until)
     if panels:
         stretch.add(side, panels, end)
     if end.time >= until:
@@ -203,41 +218,42 @@ def _advance_fast_front(law: FastFront, stretch: Stretch, side: float, until: fl
         stretch.end_reason[side] = "met"
 
 
-def _advance_slow_front(law: FastFront, stretch: Stretch, side: float, until: float) -> None:
-    """Add one panel to a slow front, and record the reason if the front ends with it.
+def _advance_slow_front(fast_front: FastFront, stretch: Stretch, side: float, until: float) -> None:
+    """Add one panel to the slow front on one side of a stretch.
 
-    If the panel ends where the pre-stress turns positive, the front continues as a fast one. law
-    belongs to the pre-stress with this side turned to the right, so that the front runs right.
+    If the front is not followed further, the reason is recorded. If it reaches positive pre-stress,
+    it continues as a fast front until a time. fast_front belongs to the pre-stress with this side
+    turned to the right: for the left side it is mirrored at x = 0. So the front runs right.
     """
-    piece = law.piece_right_of(side * stretch.ends[side].x)
+    piece = fast_front.piece_right_of(side * stretch.ends[side].x)
     # The front is slow up to this position at most: the end of the piece of negative pre-stress, or
     # the next nucleation point.
     mark = min(piece.right, stretch.next_start[side])
     front = SlowFront(
         curve=stretch.curve(side),
-        prestress=law.prestress,
+        prestress=fast_front.prestress,
         background=piece.background,
-        gamma=law.gamma,
-        alpha=law.alpha,
+        gamma=fast_front.gamma,
+        alpha=fast_front.alpha,
     )
     panel, reason, stretch.progress[side] = front.next_panel(mark, stretch.progress[side])
     if panel is not None:
         stretch.add(side, [panel], panel.end)
     end = stretch.ends[side]
     # A front cannot stop in positive pre-stress. If it seems to, its motion is not known.
-    if reason == "stops" and law.prestress(side * end.x) > EQUALITY_TOLERANCE:
+    if reason == "stops" and fast_front.prestress(side * end.x) > EQUALITY_TOLERANCE:
         reason = "positive_prestress"
-    if reason == "stops" or reason in REASONS_UNKNOWN:
+    if reason in END_REASONS:
         stretch.end_reason[side] = reason
     elif end.time >= until:
         stretch.end_reason[side] = "duration"
     elif reason == "mark" and mark >= stretch.next_start[side]:
         stretch.end_reason[side] = "met"
-    elif reason == "mark" and law.piece_right_of(mark).is_above:
+    elif reason == "mark" and fast_front.piece_right_of(mark).is_above:
         # The pre-stress is positive beyond the mark.
         stretch.progress[side] = Progress()
         stretch.restarts[side].append(side * mark)
-        _advance_fast_front(law, stretch=stretch, side=side, until=until)
+        _advance_fast_front(fast_front, stretch=stretch, side=side, until=until)
     # In all other cases the front is still slow, and the next call adds its next panel.
 
 
@@ -254,9 +270,10 @@ def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
 
 
 def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
-    """Return two stretches combined into one, or None if their fronts have not met.
+    """Return two neighbouring stretches combined into one, or None if their fronts have not met.
 
-    Each position belongs to the front that arrives first.
+    Both are cut at the position that their fronts reach at the same time. So each position belongs
+    to the front that arrives there first.
     """
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
         return None

@@ -68,10 +68,10 @@ class StickSearch:
         """
         times = self._sample_times(release, waves)
         stick_times = np.full(x.shape, np.nan)
-        # The samples are computed in batches, from left to right. A batch is examined together with
-        # the two samples before it, because a minimum is found from three samples. Before the first
-        # batch, both are the release itself. The first of them has the velocity -1, so that the
-        # release does not count as a minimum.
+        # The samples are computed in batches, one after another in time. A batch is examined
+        # together with the two samples before it, because a minimum is found from three samples.
+        # Before the first batch, both are the release itself. The first of them has the velocity
+        # -1, so that the release does not count as a minimum.
         kept_times = np.stack([release, release], axis=1)
         kept_velocities = np.tile([-1.0, 0.0], (x.size, 1))
         # Numbers of the positions whose blocks have not stuck until the last sample.
@@ -86,12 +86,12 @@ class StickSearch:
             # such sample. The two kept samples, in columns 0 and 1, are not searched.
             is_stuck = batch.velocity <= 0.0
             has_stuck = is_stuck.any(axis=1)
-            first_stuck = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
+            stuck_column = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
             # A zero in a dip between earlier samples comes first. Otherwise the zero is in the step
             # that ends at the first sample at or below 0.
-            zeros = self._zeros_next_to_minima(samples, first_stuck)
+            zeros = self._zeros_next_to_minima(samples, stuck_column)
             rows = np.flatnonzero(has_stuck & ~np.isfinite(zeros))
-            zeros[rows] = self._zeros_in_steps(samples, rows, first_stuck[rows])
+            zeros[rows] = self._zeros_in_steps(samples, rows, stuck_column[rows])
             stick_times[sliding] = zeros
             kept_times[sliding], kept_velocities[sliding] = time[:, -2:], velocity[:, -2:]
             sliding = sliding[~np.isfinite(zeros) & (time[:, -1] < self.until)]
@@ -100,23 +100,27 @@ class StickSearch:
     def _sample_times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
         """Return the times of the samples, [position, time]: equal steps and arrivals of waves.
 
-        The times of a position are sorted. At the end they repeat the final time, so that all
-        positions have equally many, and each batch is full.
+        release has the time of the release of each position. waves has the times at which waves
+        arrive, with a row for each position, NaN for a wave that never arrives. The times of a
+        position are sorted, and repeat the final time at the end, so that all rows are equally long
+        and can be divided into batches of BATCH_SIZE samples.
         """
         longest = self.until - np.min(release, initial=self.until)
         sample_count = release.size * (longest / self.step + BATCH_SIZE + waves.shape[1])
         if sample_count > MAX_SAMPLES:
-            allowed = f"a time until which sticks are found from {MAX_SAMPLES:.0e} samples"
-            needed = f"{self.until:g} takes {sample_count:.2g}"
-            raise ValueError(f"duration: {needed}; allowed: {allowed}")
+            raise ValueError(
+                f"duration: {self.until:g}, for which the search for sticks takes"
+                f" {sample_count:.2g} samples; allowed: durations for which it takes at most"
+                f" {MAX_SAMPLES:.0e}"
+            )
         batch_count = longest // (BATCH_SIZE * self.step) + 1
         steps = self.step * np.arange(1, BATCH_SIZE * batch_count + 1)
-        ends = np.full((release.size, BATCH_SIZE), self.until)
-        times = np.concatenate([release[:, None] + steps, waves, ends], axis=1)
+        final_times = np.full((release.size, BATCH_SIZE), self.until)
+        times = np.concatenate([release[:, None] + steps, waves, final_times], axis=1)
         # Right after the release du/dt is 0 apart from rounding, so that no sample is taken there.
-        # A wave that never arrives (NaN) is left out as well, because of the ~.
-        is_too_early = ~(times > release[:, None] + FIRST_SAMPLE * self.step)
-        times[is_too_early] = self.until
+        # A wave that never arrives (NaN) is left out as well, because NaN is not late enough.
+        is_late_enough = times > release[:, None] + FIRST_SAMPLE * self.step
+        times[~is_late_enough] = self.until
         np.minimum(times, self.until, out=times)
         times.sort(axis=1)
         return times
@@ -127,13 +131,13 @@ class StickSearch:
         return VelocitySamples(x, time, velocity.reshape(time.shape))
 
     def _zeros_next_to_minima(
-        self, samples: VelocitySamples, first_stuck: np.ndarray
+        self, samples: VelocitySamples, stuck_column: np.ndarray
     ) -> np.ndarray:
         """Return the first zero of du/dt in a dip between samples, for each row; NaN if none.
 
         A sample is a minimum if it is lower than the sample before it, and not higher than the one
         after it. Around each minimum du/dt is sampled again with finer steps. If all fine samples
-        are positive, this is repeated around the lowest of them. first_stuck has the column of the
+        are positive, this is repeated around the lowest of them. stuck_column has the column of the
         first sample at or below 0 in each row; later minima are ignored.
         """
         first_zeros = np.full(samples.x.shape, np.nan)
@@ -142,47 +146,52 @@ class StickSearch:
         is_minimum = (change[:, :-1] < 0.0) & (change[:, 1:] >= 0.0)
         # Samples at the end of a row may repeat the final time.
         is_minimum &= samples.time[:, 2:] > samples.time[:, 1:-1]
-        is_before_stick = np.arange(1, change.shape[1]) < first_stuck[:, None]
-        # From here on there is one row for each minimum; rows are the rows of samples. before is
-        # the column of the sample before the minimum.
-        rows, before = np.nonzero(is_minimum & is_before_stick)
-        start, end = samples.time[rows, before], samples.time[rows, before + 2]
-        if not rows.size:
+        is_before_stick = np.arange(1, change.shape[1]) < stuck_column[:, None]
+        # A row may have several minima. From here on, arrays have one element for each minimum:
+        # its row, and the times of the samples before and after it.
+        row, column_before = np.nonzero(is_minimum & is_before_stick)
+        start, end = samples.time[row, column_before], samples.time[row, column_before + 2]
+        if not row.size:
             return first_zeros
         for _ in range(2):
-            fine = self._sample(samples.x[rows], np.linspace(start, end, FINE_PARTS + 1, axis=1))
+            fine = self._sample(samples.x[row], np.linspace(start, end, FINE_PARTS + 1, axis=1))
             # The column of the first fine sample at or below 0. It is 0 if there is none, since the
             # first fine sample is positive.
-            column = np.argmax(fine.velocity <= 0.0, axis=1)
-            with_zero = np.flatnonzero(column)
-            zeros = self._zeros_in_steps(fine, with_zero, column[with_zero])
-            first_zeros[rows[with_zero]] = np.fmin(first_zeros[rows[with_zero]], zeros)
+            first_below = np.argmax(fine.velocity <= 0.0, axis=1)
+            with_zero = np.flatnonzero(first_below)
+            zeros = self._zeros_in_steps(fine, with_zero, first_below[with_zero])
+            first_zeros[row[with_zero]] = np.fmin(first_zeros[row[with_zero]], zeros)
             # The other minima are examined once more, between the neighbours of the lowest sample.
             positive = np.flatnonzero((fine.velocity > 0.0).all(axis=1))
             lowest = np.clip(np.argmin(fine.velocity[positive], axis=1), 1, FINE_PARTS - 1)
-            rows = rows[positive]
+            row = row[positive]
             start, end = fine.time[positive, lowest - 1], fine.time[positive, lowest + 1]
         return first_zeros
 
     def _zeros_in_steps(
-        self, samples: VelocitySamples, rows: np.ndarray, columns: np.ndarray
+        self, samples: VelocitySamples, rows: np.ndarray, end_columns: np.ndarray
     ) -> np.ndarray:
-        """Return zeros of du/dt in steps: one for each row, in the step that ends at its column.
+        """Return the zero of du/dt in one time step of each of the given rows of samples.
 
-        du/dt is not positive at the end of the step. If it never rises above 0 in the step, a time
-        next to the start of the step is returned.
+        The step ends at the sample in the end column, where du/dt is not positive, and starts at
+        the sample before. If du/dt never rises above 0 in the step, a time next to the start is
+        returned.
         """
         x = samples.x[rows]
-        start, end = samples.time[rows, columns - 1], samples.time[rows, columns]
-        at_start, at_end = samples.velocity[rows, columns - 1], samples.velocity[rows, columns]
+        start, end = samples.time[rows, end_columns - 1], samples.time[rows, end_columns]
+        at_start = samples.velocity[rows, end_columns - 1]
+        at_end = samples.velocity[rows, end_columns]
+        # The velocity that is searched for.
         target = np.zeros(rows.size)
-        # If a step begins at the release, du/dt is 0 at its start. The step is then shortened, and
-        # the search is for the time at which du/dt falls to QUIET_VELOCITY.
+        # A step that begins at the release has du/dt = 0 at its start, which is not the zero that
+        # is searched for. Such a step is shortened, and the search is for the time at which du/dt
+        # falls to QUIET_VELOCITY.
         quiet = np.flatnonzero(at_start <= 0.0)
         shortened = self._shorten_steps(x[quiet], start[quiet], end[quiet])
         target[quiet] = QUIET_VELOCITY
         start[quiet], end[quiet] = shortened.time.T
         at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
+        # In steps without a positive velocity the end of the shortened step is returned.
         zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -204,13 +213,17 @@ class StickSearch:
         """Return samples at both ends of shorter steps, in which du/dt falls to QUIET_VELOCITY.
 
         In the given steps du/dt is 0 at the start, and not positive at the end. In between it may
-        rise, but next to a point where a slow front stops it does so only briefly. If it does not
-        rise, the first sample is at the end of the step, and the second one next to its start.
+        rise, but next to a point where a slow front stops it does so only briefly. So it is sampled
+        at times that become ever denser towards the start. If it does not rise, the first sample is
+        at the end of the step, and the second one next to its start.
         """
         duration = end - start
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
-        # The columns go back from the end of the step to its start. So this is the column of the
-        # last sample that has risen, and the sample after it is in the column before.
-        risen = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        row, column = np.arange(x.size)[:, None], np.stack([risen, risen - 1], axis=1)
-        return VelocitySamples(x, fine.time[row, column], fine.velocity[row, column])
+        # The columns go back in time from the end of the step to its start. So this is the column
+        # of the last sample above QUIET_VELOCITY, and the column before has the next later sample.
+        # If there is none, it is column 0, the end of the step. The column before, -1, is then that
+        # next to the start.
+        last_above = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
+        columns = np.stack([last_above, last_above - 1], axis=1)
+        rows = np.arange(x.size)[:, None]
+        return VelocitySamples(x, fine.time[rows, columns], fine.velocity[rows, columns])

@@ -35,7 +35,6 @@ found.
 
 from collections.abc import Sequence
 from functools import cached_property
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -96,38 +95,44 @@ class PartWithEdge(Part):
 
     @cached_property
     def knots(self) -> Knots:
-        """Knots that are dense enough to interpolate the trailing edge between them."""
+        """Positions and their stick times, dense enough to interpolate the trailing edge."""
         x = self._first_positions()
         knots = self._make_knots(x, self.find_stick_times(x))
         if x.size < 2:
             return knots
-        # Every second knot lies in the middle between its neighbours. If the neighbours do not
-        # predict it, the two intervals next to it are refined.
+        # Every second knot lies in the middle between its neighbours. If interpolation between the
+        # neighbours does not predict it, the intervals on both sides of it are refined.
         outer, middle = knots.select(np.s_[::2]), knots.select(np.s_[1::2])
         is_predicted = outer.predicts_middle(np.arange(middle.x.size), middle)
         left_ends = x[:-1]
         unresolved = left_ends[~np.repeat(is_predicted, 2)]
+        # The edge has kinks where waves meet it that change du/dt at once. At the final time it
+        # ends.
         x = np.union1d(self._positions_near_waves(knots), self._positions_near_end(knots))
         knots = self._with_more_knots(
             knots, x=x, stick=self.find_stick_times(x), unresolved=unresolved
         )
-        # Positions that stick between two sliding knots become knots, until none is left.
+        # Two neighbouring knots may still slide at the final time, although a position between them
+        # has stuck. Such positions become knots, until none is left.
         while (x := stuck_between(self, knots.sliding_intervals, self.until)).size:
             knots = self._with_more_knots(knots, x, self.find_stick_times(x))
         # An edge that may become slower than the waves between two knots is checked once more.
         x = knots.positions_to_recheck
-        return self._with_more_knots(knots, x, self._stick_time(x, knots)) if x.size else knots
+        if not x.size:
+            return knots
+        return self._with_more_knots(knots, x, self._exact_stick_time(x, knots))
 
     def _first_positions(self) -> np.ndarray:
         """Return the positions of the first knots.
 
-        Every second one is the middle between its neighbours. The others are the ends of panels,
-        the marks, and the positions of the fronts at the final time.
+        They are the ends of panels, the marks, the positions of the two fronts at the final time,
+        and the middles between all of these. So every second one is a middle.
         """
         curve = self.curve
         left, right = curve.edges[[0, -1]]
         if self.one_side:
             left = max(left, 0.0)
+        # The fronts are followed from the position that was released first.
         just_before_end = self.until * (1.0 - EQUALITY_TOLERANCE)
         nucleation = curve.edges[np.argmin(curve.edge_times)]
         fronts = [curve.front_at(just_before_end, nucleation, side) for side in (-1.0, 1.0)]
@@ -148,13 +153,15 @@ class PartWithEdge(Part):
         stick: np.ndarray,
         unresolved: Sequence[float] | np.ndarray = (),
     ) -> Knots:
-        """Return the knots with new ones at x, and refine the intervals around the new knots.
+        """Return the knots and new ones at x, with the intervals next to the new ones refined.
 
-        stick has the stick times at x, NaN where there is none. unresolved has the left ends of
-        other intervals that are refined too.
+        Refined means: divided by further knots until interpolation is accurate. stick has the stick
+        times at x, NaN where there is none. unresolved has the left ends of other intervals that
+        are refined too.
         """
-        # A new knot divides an interval into two. One of them begins at the old knot on its left,
-        # and the other one at the new knot itself.
+        # An interval is identified by the position of its left end, since numbers change when knots
+        # are added. A new knot divides an interval into two. One of them begins at the old knot on
+        # its left, and the other one at the new knot itself.
         old_left_ends = knots.x[knots.interval_of(x)]
         new_left_ends = x[x < knots.x[-1]]
         left_ends = np.unique([*unresolved, *old_left_ends, *new_left_ends])
@@ -166,7 +173,9 @@ class PartWithEdge(Part):
     def _make_knots(self, x: np.ndarray, stick: np.ndarray) -> Knots:
         """Return knots at positions x with given stick times, NaN where a position does not stick.
 
-        The kind of each knot, and du/dt and its derivatives at the stick time, are computed.
+        This computes du/dt and its derivatives at the stick time, and from them the kind of each
+        knot: it slides until the end, or the trailing edge is faster or slower than the waves
+        there, or its slip is too brief to decide between these two.
         """
         sticks = np.isfinite(stick)
         time = np.where(sticks, stick, self.until)
@@ -201,9 +210,10 @@ class PartWithEdge(Part):
         return np.concatenate([self._positions_near_waves_to(knots, side) for side in sides])
 
     def _positions_near_waves_to(self, knots: Knots, side: float) -> np.ndarray:
-        """Return positions on both sides of each point where a wave to one side meets the edge.
+        """Return positions on both sides of each point where a wave meets the trailing edge.
 
-        The waves start at the marks, and run to the left (side = -1) or to the right (side = +1).
+        The waves start at the marks when the front arrives there, and run to the left (side = -1)
+        or to the right (side = +1).
         """
         marks = np.array(self.marks)
         start_times = self.curve.arrival(marks)
@@ -244,6 +254,7 @@ class PartWithEdge(Part):
 
     def _positions_near_end(self, knots: Knots) -> np.ndarray:
         """Return positions on both sides of where the trailing edge reaches the final time."""
+        # Only one of the two ends of these intervals sticks before the final time.
         k = np.arange(knots.x.size - 1)
         k = k[knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)]
         at_left = self._velocity_at_end(knots.x[k])
@@ -265,31 +276,33 @@ class PartWithEdge(Part):
         return np.clip([x - offset, x + offset], left, right).ravel()
 
     def _refine(self, knots: Knots, left_ends: np.ndarray) -> tuple[Knots, np.ndarray]:
-        """Add knots in some intervals, which are given by their left ends.
+        """Divide some intervals once by new knots, and return all knots.
 
-        Return all knots, and the left ends of the intervals to refine next. A piece of a cut
-        interval is refined if the edge jumps or reaches the final time in it. Both halves of a
-        halved interval are refined if the interpolation did not predict the middle.
+        The intervals are given by the positions of their left ends. An interval in which the edge
+        jumps or reaches the final time is cut into pieces, and any other one is halved. Also return
+        the left ends of the new intervals to divide next: pieces in which the edge jumps or reaches
+        the final time, and both halves if interpolation did not predict the middle.
         """
         k = self._not_in_future_of_jumps(knots, np.searchsorted(knots.x, left_ends))
         cut, halved = self._intervals_to_divide(knots, k)
-        # The left ends of the pieces, [piece, interval].
-        pieces = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
-        between_pieces = pieces[1:].ravel()
+        # The first piece of an interval starts at the left end of the interval. The axes of these
+        # positions are [piece, interval].
+        piece_starts = np.linspace(knots.x[cut], knots.x[cut + 1], PIECES_PER_CUT + 1)[:-1]
+        inner_piece_starts = piece_starts[1:].ravel()
         middles = 0.5 * (knots.x[halved] + knots.x[halved + 1])
-        x = np.append(between_pieces, middles)
+        x = np.append(inner_piece_starts, middles)
         if not x.size:
             return knots, x
-        new_knots = self._make_knots(x, self._stick_time(x, knots))
-        new_middles = new_knots.select(np.s_[between_pieces.size :])
-        is_predicted = knots.predicts_middle(halved, new_middles)
+        new_knots = self._make_knots(x, self._exact_stick_time(x, knots))
+        middle_knots = new_knots.select(np.s_[inner_piece_starts.size :])
         refined = knots.joined(new_knots)
-        self._mark_slow_intervals(refined, pieces)
-        halves = np.append(knots.x[halved], middles)
-        unresolved_halves = halves[~np.tile(is_predicted, 2)]
-        k = np.searchsorted(refined.x, pieces.ravel())
+        self._mark_slow_intervals(refined, piece_starts)
+        is_unresolved = ~knots.predicts_middle(halved, middle_knots)
+        unresolved_halves = [knots.x[halved[is_unresolved]], middles[is_unresolved]]
+        k = np.searchsorted(refined.x, piece_starts.ravel())
         has_event = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        return refined, np.append(unresolved_halves, pieces.ravel()[has_event])
+        pieces_with_event = piece_starts.ravel()[has_event]
+        return refined, np.concatenate([*unresolved_halves, pieces_with_event])
 
     def _intervals_to_divide(self, knots: Knots, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return which of the intervals k are cut into pieces, and which are halved.
@@ -298,6 +311,7 @@ class PartWithEdge(Part):
         Intervals that are too short are not divided.
         """
         has_jump = knots.has_jump(k)
+        # Only one of the two knots sticks before the final time.
         reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
         min_length = np.full(k.size, MIN_INTERVAL * self.scale)
         min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
@@ -314,41 +328,43 @@ class PartWithEdge(Part):
     def _not_in_future_of_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
         """Return the intervals of k, except those that lie completely in the future of a jump.
 
-        A knot is in the future of a jump if a wave from the jump arrives there before the knot
-        sticks. Nothing is known about the edge there.
+        A knot is in the future of a jump of the edge if a wave from the jump arrives there before
+        the knot sticks. Nothing is known about the edge there.
         """
-        knots_before_jumps, lengths = knots.ends_before_jumps(k)
-        # The axes are [left or right end of the interval, interval, jump].
-        ends = np.array([k, k + 1])[..., None]
-        # A wave that starts at the knot before a jump arrives at an end before its stick if it
-        # starts before this time.
-        travel_time = np.abs(knots.x[ends] - knots.x[knots_before_jumps])
-        latest_start = knots.stick[ends] - travel_time
-        # From that knot the edge runs to the jump in less time than a wave, which takes at most the
-        # length of the interval. A wave from the jump may have to run back by the same distance. So
-        # an end is certainly in the future of the jump if its latest start is two lengths later
-        # than the stick of that knot.
-        is_outside = latest_start < knots.stick[knots_before_jumps] + 2.0 * lengths
-        has_end_outside = is_outside.any(axis=0)
-        return k[has_end_outside.all(axis=1)]
+        is_kept = np.full(k.size, True)
+        jumps = k[knots.has_jump(k)]
+        for jump, before_jump in zip(jumps, knots.ends_before_jumps(jumps), strict=True):
+            # To arrive at a knot before it sticks, a wave must leave the knot before the jump no
+            # later than this. From there the edge runs to the jump in less time than a wave, which
+            # takes at most the length of the interval. A wave from the jump may have to run back by
+            # the same distance. So a knot is certainly in the future of the jump if this time is
+            # two lengths later than the stick before the jump.
+            travel_time = np.abs(knots.x - knots.x[before_jump])
+            latest_start = knots.stick - travel_time
+            length = knots.x[jump + 1] - knots.x[jump]
+            is_outside = latest_start < knots.stick[before_jump] + 2.0 * length
+            is_kept &= is_outside[k] | is_outside[k + 1]
+        return k[is_kept]
 
-    def _mark_slow_intervals(self, knots: Knots, pieces: np.ndarray) -> None:
-        """Mark knots of intervals that were cut because of a jump, but have a slow edge instead.
+    def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
+        """Set the kind SLOWER_THAN_WAVES in intervals where a slow edge looked like a jump.
 
-        A jump lies in only one piece of its interval. If the edge takes longer than a wave in every
-        piece, it does not jump. It is slower than the waves, although its slopes at the knots are
-        just below 1, and all knots of the interval get the kind SLOWER_THAN_WAVES.
+        Intervals with a jump were cut into pieces, and only one of them has the jump. If the edge
+        takes longer than a wave in every piece, it does not jump. It is slower than the waves,
+        although its slopes at the knots are just below 1. The kinds of all knots of such an
+        interval are changed in place.
 
-        pieces has the left ends of the pieces of each interval, [piece, interval].
+        piece_starts has the left ends of the pieces of each interval, [piece, interval].
         """
-        k = np.searchsorted(knots.x, pieces)
-        takes_longer = knots.has_jump(k).all(axis=0)
+        k = np.searchsorted(knots.x, piece_starts)
+        is_longer_in_all = knots.has_jump(k).all(axis=0)
         # Shorter pieces are left as they are, because several of them may have a jump.
-        is_long = pieces[1] - pieces[0] > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
-        pieces_of_slow_edge = k[:, takes_longer & is_long]
-        knots.kind[pieces_of_slow_edge] = SLOWER_THAN_WAVES
-        # The right end of the last piece of each interval.
-        knots.kind[pieces_of_slow_edge[-1] + 1] = SLOWER_THAN_WAVES
+        piece_length = piece_starts[1] - piece_starts[0]
+        is_long = piece_length > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
+        slow = k[:, is_longer_in_all & is_long]
+        # Each piece has its left end, and the last piece also its right end.
+        knots.kind[slow] = SLOWER_THAN_WAVES
+        knots.kind[slow[-1] + 1] = SLOWER_THAN_WAVES
 
     def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
         """Return stick times that are interpolated between knots, without further computation.
@@ -362,14 +378,17 @@ class PartWithEdge(Part):
         # The cubic is right only where the edge is faster than the waves.
         return np.where(knots.outruns_waves(k), by_cubic, by_line)
 
-    def _stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
+    def _exact_stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
         """Return the exact stick times of positions; NaN if a block does not stick.
 
-        Where the knots allow it, they are found faster than by a search from the release on.
+        Between knots (by default those of this part) where the edge is faster than the waves, they
+        are found from the interpolated times. Elsewhere they are searched from the release on,
+        which takes longer.
         """
         knots = knots or self.knots
         if knots.x.size < 2:
             return self.find_stick_times(x)
+        # The interval between two knots that contains each position.
         k = knots.interval_of(x)
         is_between_knots = (x >= knots.x[0]) & (x <= knots.x[-1])
         stick_times = self._stick_times_by_newton(
@@ -386,7 +405,7 @@ class PartWithEdge(Part):
     def _stick_times_by_newton(
         self, knots: Knots, x: np.ndarray, k: np.ndarray, is_requested: np.ndarray
     ) -> np.ndarray:
-        """Return stick times of positions x in the intervals k, by Newton's method.
+        """Return the stick times of positions x in the intervals k, by Newton's method for du/dt.
 
         It starts from the interpolated stick times. The result is NaN where it is not requested,
         and where the steps lead too far away from the interpolated time.
@@ -394,7 +413,7 @@ class PartWithEdge(Part):
         length = knots.x[k + 1] - knots.x[k]
         fraction = (x - knots.x[k]) / length
         guess = knots.interpolate(k, x)
-        # The acceleration at the stick, interpolated linearly between the knots.
+        # The first step uses the acceleration at the stick, interpolated between the knots.
         at_knots = knots.velocity_by_xi + knots.velocity_by_eta
         acceleration = at_knots[k] * (1.0 - fraction) + at_knots[k + 1] * fraction
         stick_times, time = np.full(x.shape, np.nan), guess.copy()
@@ -404,10 +423,11 @@ class PartWithEdge(Part):
         for _ in range(MAX_NEWTON_STEPS):
             if not missing.size:
                 break
+            # Both are 0 before the first step.
             velocity_before, step_before = velocity[missing], step[missing]
             velocity[missing] = self.velocity(x[missing], time[missing])
-            # After the first step the acceleration is the change of velocity divided by the step,
-            # unless the step is tiny.
+            # The next steps use the change of velocity divided by the last step, unless this step
+            # was tiny.
             secant = velocity_before - velocity[missing]
             secant /= np.where(step_before == 0.0, np.nan, step_before)
             has_secant = np.abs(step_before) > NEWTON_TOLERANCE
@@ -415,11 +435,13 @@ class PartWithEdge(Part):
             step[missing] = velocity[missing] / acceleration[missing]
             time[missing] -= step[missing]
             is_near = np.abs(time[missing] - guess[missing]) <= MAX_CORRECTION * length[missing]
+            # The search also ends if the next step will be tiny. It is about the product of the
+            # last two steps.
             step_size = np.abs(step[missing])
             next_size = step_size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
             is_tiny = step_size < NEWTON_TOLERANCE
-            is_found = is_tiny | (next_size < NEXT_STEP_TOLERANCE * length[missing])
-            is_found &= is_near
+            is_next_tiny = next_size < NEXT_STEP_TOLERANCE * length[missing]
+            is_found = is_near & (is_tiny | is_next_tiny)
             stick_times[missing[is_found]] = time[missing[is_found]]
             missing = missing[is_near & ~is_found]
         return stick_times
@@ -432,7 +454,8 @@ class PartWithEdge(Part):
         back from there faster than the waves.
         """
         knots = self.knots
-        before_jumps, _ = knots.ends_before_jumps(np.arange(knots.x.size - 1))
+        k = np.arange(knots.x.size - 1)
+        before_jumps = knots.ends_before_jumps(k[knots.has_jump(k)])
         slow = np.union1d(before_jumps, np.flatnonzero(knots.kind == SLOWER_THAN_WAVES))
         slow = np.union1d(slow, self._stops_without_edge()).astype(int)
         return [Point(float(knots.x[k]), float(knots.stick[k])) for k in slow]
@@ -440,30 +463,33 @@ class PartWithEdge(Part):
     def _stops_without_edge(self) -> list[int]:
         """Return the numbers of the outermost knots where a front stops and no fast edge begins.
 
-        This is so if the edge takes longer than a wave from the stopped front to the nearest knot
-        whose kind is not BRIEF_SLIP.
+        The slip next to a stopped front is too brief to show the edge (knots of the kind
+        BRIEF_SLIP). No fast edge begins there if the nearest other knot sticks so much later that
+        the edge takes longer than a wave to it.
         """
         knots = self.knots
         not_brief = np.flatnonzero(knots.kind != BRIEF_SLIP)
         if not not_brief.size:
             return []
         stops = []
-        # The left end of the part, and its right end.
-        for outermost in (0, -1):
-            end, nearest = range(knots.x.size)[outermost], not_brief[outermost]
-            distance = abs(knots.x[nearest] - knots.x[end])
-            delay = abs(knots.stick[nearest] - knots.stick[end])
+        left_time, right_time = self.curve.edge_times[[0, -1]]
+        left_side = (0, not_brief[0], left_time)
+        right_side = (knots.x.size - 1, not_brief[-1], right_time)
+        for outermost, nearest, time_of_front in (left_side, right_side):
+            distance = abs(knots.x[nearest] - knots.x[outermost])
+            delay = abs(knots.stick[nearest] - knots.stick[outermost])
             # A front that still moves at the final time has not stopped.
-            moves = self.curve.edge_times[outermost] >= self.until
-            has_stopped = knots.kind[end] == BRIEF_SLIP and not moves
+            still_moves = time_of_front >= self.until
+            has_stopped = knots.kind[outermost] == BRIEF_SLIP and not still_moves
             if has_stopped and delay > distance * (1.0 + EQUALITY_TOLERANCE):
-                stops.append(end)
+                stops.append(outermost)
         return stops
 
     def first_stick(self) -> FirstStick | None:
         """Return where and when something first sticks; None if nothing does before the end."""
         first = self._first_at_knots()
-        # If positions between the knots have stuck earlier, they become knots too.
+        # The knots need not show the first stick. Positions between them that have stuck earlier
+        # become knots too, until there are none.
         while first:
             x = self._positions_stuck_earlier(first)
             if not x.size:
@@ -488,10 +514,11 @@ class PartWithEdge(Part):
         may_be_first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
         nearest = int(may_be_first[np.argmin(np.abs(knots.x[may_be_first]))])
         first = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
-        # An interval cannot contain a stick before this time, since the edge is faster than the
-        # waves.
+        # In an interval nothing sticks before this time, since the edge is faster than the waves,
+        # whose speed is 1.
         earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
-        for k in np.flatnonzero(self._may_have_minimum(error) & (earliest < first.time)).tolist():
+        may_contain_first = self._may_have_minimum(error) & (earliest < first.time)
+        for k in np.flatnonzero(may_contain_first).tolist():
             minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
             # A difference that is a rounding error does not count.
             if minimum and minimum.time < first.time - ROUNDING_ERROR:
@@ -501,7 +528,7 @@ class PartWithEdge(Part):
     def _stick_time_errors(self) -> np.ndarray:
         """Return the errors of the stick times of knots, 0 where they are negligible.
 
-        An error is that of du/dt, divided by the rate at which du/dt falls through 0.
+        An error is the rounding error of du/dt, divided by the rate at which du/dt falls through 0.
         """
         knots = self.knots
         deceleration = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
@@ -513,27 +540,33 @@ class PartWithEdge(Part):
         return error
 
     def _may_have_minimum(self, error: np.ndarray) -> np.ndarray:
-        """Return a mask of the intervals in which the trailing edge may have a minimum.
+        """Return a mask of the intervals between knots in which the edge may have a minimum.
 
-        Stick times fall from both ends towards the inside of such an interval. Intervals in which
-        a stick time at an end has an error are left out.
+        Stick times fall from both ends towards the inside of such an interval, and at least one end
+        sticks before the final time. Intervals are left out if the stick time at an end has an
+        error (an element of ``error``).
         """
         knots = self.knots
         k = np.arange(knots.x.size - 1)
         falls_inwards = (knots.slope[:-1] < 0.0) & (knots.slope[1:] > 0.0)
         is_fast = knots.outruns_waves(k) | knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        is_certain = error[:-1] + error[1:] == 0.0
+        is_certain = (error[:-1] == 0.0) & (error[1:] == 0.0)
         return falls_inwards & is_fast & is_certain
 
     def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
-        """Return positions that have stuck before the first stick that is known."""
+        """Return positions between knots that have stuck before the first stick that is known.
+
+        They are searched in each interval where a stick before this time is possible.
+        """
         knots, curve = self.knots, self.curve
-        # A stick between two knots makes both of them stick, at the latest when its waves arrive
-        # there. So it is not earlier than this time.
+        # A stick between two knots makes both of them stick, at the latest when waves from it
+        # arrive there. Their travel times add up to the length of the interval. So the stick is not
+        # earlier than this time.
         earliest = 0.5 * (knots.stick[:-1] + knots.stick[1:] - np.diff(knots.x))
         is_released = curve.arrival(knots.x) < first.time
         is_partly_released = is_released[:-1] | is_released[1:]
-        intervals: list[tuple[float, float]] = []
+        left_ends: list[float] = []
+        right_ends: list[float] = []
         for k in np.flatnonzero((earliest < first.time) & is_partly_released):
             # If a front is in this interval at the time, only its released part is examined.
             left, right = knots.x[k : k + 2].tolist()
@@ -543,10 +576,10 @@ class PartWithEdge(Part):
                 right = curve.front_at(first.time, left, 1.0)
             # If the first stick lies in this interval, both sides of it are examined.
             inner = [first.x] if left < first.x < right else []
-            intervals += pairwise([left, *inner, right])
-        # Row 0 has the left ends, and row 1 the right ends.
-        pairs = np.array(intervals).reshape(-1, 2).T
-        return stuck_between(self, x=pairs, time=first.time, first=first.x)
+            left_ends += [left, *inner]
+            right_ends += [*inner, right]
+        x = np.array([left_ends, right_ends])
+        return stuck_between(self, x=x, time=first.time, first_x=first.x)
 
     def _minimum_between(self, left: float, right: float) -> FirstStick | None:
         """Return the minimum of the trailing edge between two positions.
@@ -557,10 +590,10 @@ class PartWithEdge(Part):
         def edge_slope(position: float) -> float:
             """Return the slope of the trailing edge at a position."""
             x = np.array([position])
-            return float(self._make_knots(x, self._stick_time(x)).slope[0])
+            return float(self._make_knots(x, self._exact_stick_time(x)).slope[0])
 
         # If the edge falls only by rounding errors, one of the two positions is the minimum.
         if not edge_slope(left) < 0.0 < edge_slope(right):
             return None
         x = root_between(edge_slope, left, right, xtol=NEWTON_TOLERANCE)
-        return FirstStick(float(self._stick_time(np.array([x]))[0]), x)
+        return FirstStick(float(self._exact_stick_time(np.array([x]))[0]), x)

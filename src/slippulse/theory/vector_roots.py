@@ -31,13 +31,15 @@ def roots_between(
     interpolation or by bisection.
     """
     if np.any(at_lower * at_upper > 0.0):
-        raise ValueError("lower, upper: values of equal signs; allowed: values of different signs")
-    # x1 is the newest end of the bracket, x2 the other end, and x3 the end that x1 has replaced.
-    # f1, f2 and f3 are the values there.
+        bounds = "bounds at which a function has values of equal signs"
+        raise ValueError(f"lower, upper: {bounds}; allowed: bounds with different signs")
+    # x1 is the newest end of the bracket, x2 the other end, and x3 the former end that x1 has
+    # replaced. f1, f2 and f3 are the values there.
     x1, f1 = lower, at_lower
     x2, f2 = upper, at_upper
     best = np.array(upper)
-    # Numbers of the functions whose roots have not been found yet.
+    # Numbers of the functions whose roots have not been found yet. All other arrays in the loop
+    # have one element for each of these.
     unsolved = np.arange(upper.size)
     # The next point lies at this fraction of the way from x1 to x2.
     fraction = at_lower / (at_lower - at_upper)
@@ -48,8 +50,10 @@ def roots_between(
         replaces_x1 = (f > 0.0) == (f1 > 0.0)
         x3, x2 = np.where(replaces_x1, (x1, x2), (x2, x1))
         f3, f2 = np.where(replaces_x1, (f1, f2), (f2, f1))
+        # The end of the bracket with the smaller value is the best root so far.
         best[unsolved] = np.where(np.abs(f2) < np.abs(f), x2, x)
-        # The tolerance is at least the spacing of floating-point numbers.
+        # The tolerance is at least the spacing of floating-point numbers. The search ends when the
+        # bracket is shorter than two tolerances.
         tolerance = np.maximum(xtol, 4.0 * np.finfo(float).eps * np.abs(x))
         min_fraction = tolerance / np.abs(x2 - x)
         goes_on = (min_fraction < 0.5) & (f != 0.0)
@@ -76,7 +80,8 @@ def increasing_roots(
 
     Each root lies in the bracket from lower to upper, and its search starts at guess. A secant
     through the last two points gives the next one. If the secant leaves the bracket, the next point
-    is the middle of the bracket.
+    is the middle of the bracket. The search ends when the error of the last step or the bracket is
+    as small as rounding errors.
     """
     low, high = np.array(lower), np.array(upper)
     # Numbers of the functions whose roots have not been found yet.
@@ -91,6 +96,7 @@ def increasing_roots(
         # The point becomes the end of the bracket on its side of the root.
         high[unsolved] = np.where(value > 0.0, np.minimum(high[unsolved], x_now), high[unsolved])
         low[unsolved] = np.where(value < 0.0, np.maximum(low[unsolved], x_now), low[unsolved])
+        # The zero of the secant; no step is made if the last two values are equal.
         change = value - value_before[unsolved]
         is_flat = change == 0.0
         last_step = x_now - x_before[unsolved]

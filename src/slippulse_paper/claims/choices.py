@@ -72,8 +72,8 @@ class Change(NamedTuple):
 def changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return all ordered pairs of combinations that differ in one choice only.
 
-    Combinations without a deviation are left out. So are those at the last release, because this is
-    a property of the lattice and not a choice that the paper leaves open.
+    This must be a choice that the paper leaves open (CHOICE_WORDS). Combinations without a
+    deviation are left out. So are those at the last release, which is a property of the lattice.
     """
     compared = []
     for combination in combinations:
@@ -85,9 +85,15 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
         names = before.choice | after.choice
         changed = [name for name in names if before.choice.get(name) != after.choice.get(name)]
         if len(changed) == 1 and changed[0] in CHOICE_WORDS:
-            exact = before.choice.get("solution") == "exact"
-            size = abs(before.result["deviation"] - after.result["deviation"])
-            single_changes.append(Change(changed[0], before, after, exact, size))
+            single_changes.append(
+                Change(
+                    name=changed[0],
+                    before=before,
+                    after=after,
+                    exact=before.choice.get("solution") == "exact",
+                    size=abs(before.result["deviation"] - after.result["deviation"]),
+                )
+            )
     return single_changes
 
 
@@ -99,20 +105,22 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     single change with the largest effect.
     """
     all_changes = changes(combinations)
-    deciding: dict[str, Change] = {}
+    smallest_deciding: dict[str, Change] = {}
     for change in sorted(all_changes, key=attrgetter("size")):
         holds_before, holds_after = change.before.result["holds"], change.after.result["holds"]
         if holds_before is True and holds_after is False:
-            deciding.setdefault(change.name, change)
-    # Changes of exact solutions rank higher than changes of lattices, and larger ones higher than
-    # smaller ones. The dictionary keeps the last change of each choice, which ranks highest.
+            smallest_deciding.setdefault(change.name, change)
+    # Changes between exact solutions rank above those between lattices, and larger changes above
+    # smaller ones.
     rank = attrgetter("exact", "size")
-    largest_by_choice = {change.name: change for change in sorted(all_changes, key=rank)}
+    largest_by_choice: dict[str, Change] = {}
+    for change in sorted(all_changes, key=rank):
+        # This change ranks above the earlier ones of the same choice, and replaces them.
+        largest_by_choice[change.name] = change
     largest_first = sorted(largest_by_choice.values(), key=rank)[::-1]
-    deciding_in_order = [
-        deciding[change.name] for change in largest_first if change.name in deciding
-    ]
-    return deciding_in_order or largest_first[:1]
+    names = [change.name for change in largest_first]
+    decisive = [smallest_deciding[name] for name in names if name in smallest_deciding]
+    return decisive or largest_first[:1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +144,11 @@ class OverChoices(Claim):
         return decisive_changes(self.combinations)
 
     def fields(self) -> dict[str, Any]:
-        """Return the numbers shown, one row for each combination, and the most important choice."""
+        """Return the fields of the shown result, with the verdict over all combinations.
+
+        The field choices has one row for each combination, and choice names the choice on which the
+        verdict depends most.
+        """
         rows = [combination.choice | combination.result for combination in self.combinations]
         return self.shown.json_fields() | {
             "verdict": self.verdict(),
@@ -158,31 +170,27 @@ class OverChoices(Claim):
             the first combination if none has
         unsure : the template values of the claim at this combination
         """
-        holding: list[float | None] = []
-        failing: list[float | None] = []
-        last: list[float] = []
-        for combination in self.combinations:
-            deviation, holds = combination.result["deviation"], combination.result["holds"]
-            if holds is True:
-                holding.append(deviation)
-            if holds is False:
-                failing.append(deviation)
-            if combination.fraction == LAST_RELEASE_FRACTION and deviation is not None:
-                last.append(deviation)
-        in_doubt = self.combinations[0]
-        for combination in self.combinations:
-            if combination.result["verdict"] == rules.CAVEAT:
-                in_doubt = combination
-                break
+        results = [combination.result for combination in self.combinations]
+        at_last_release = [
+            combination.result["deviation"]
+            for combination in self.combinations
+            if combination.fraction == LAST_RELEASE_FRACTION
+        ]
+        with_caveat = [
+            combination
+            for combination in self.combinations
+            if combination.result["verdict"] == rules.CAVEAT
+        ]
+        in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
         settings = [
-            f"{CHOICE_WORDS[name]} {named(value)}"
+            f"{CHOICE_WORDS[name]} {text_of_value(value)}"
             for name, value in in_doubt.choice.items()
             if name in CHOICE_WORDS
         ]
         return self.shown.template_values | {
-            "holding": holding,
-            "failing": failing,
-            "last": last,
+            "holding": [result["deviation"] for result in results if result["holds"] is True],
+            "failing": [result["deviation"] for result in results if result["holds"] is False],
+            "last": [deviation for deviation in at_last_release if deviation is not None],
             "changes": self.decisive,
             "choice_names": CHOICE_WORDS,
             "settings": settings,
@@ -196,12 +204,12 @@ def over_choices(
     """Make one result about a claim from its results at all combinations.
 
     shown : the result whose numbers are shown; that at the first combination by default
-    fields : attributes of the shown result that are replaced
+    fields : attributes that are replaced in the shown result
     """
     shown = replace(shown or combinations[0].claim, **fields)
     return OverChoices(combinations=combinations, shown=shown, tolerance=shown.tolerance)
 
 
-def named(value: float | str) -> str:
+def text_of_value(value: float | str) -> str:
     """Return the value of a choice as text: a name as it is, or a formatted number."""
     return value if isinstance(value, str) else setting(value)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from ..configuration.problems import nearest
+from ..configuration.problems import spelling_hint
 
 # Reasons why a sentence of the paper is or is not tested by a claim, with the words for a table.
 REASONS = {
@@ -38,7 +38,7 @@ def read_entries(path: str | Path, tolerances: Mapping[str, Mapping]) -> dict[st
     for id, changed_tolerances in tolerances.items():
         if id not in claims:
             raise ValueError(
-                f"claims.{id}: unknown claim{nearest(id, claims)}; allowed: those in {path}"
+                f"claims.{id}: unknown claim{spelling_hint(id, claims)}; allowed: those in {path}"
             )
         claims[id] |= changed_tolerances
     return texts

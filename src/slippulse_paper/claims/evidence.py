@@ -63,6 +63,8 @@ def agreed_answers(finest: Iterable, coarser: Iterable) -> list[bool | None]:
 def with_grid_uncertainty(tables: Lattices, values: Sequence[float]) -> Uncertain:
     """Return a value on the finest lattice, and its uncertainty because of the finite spacing.
 
+    The uncertainty is 0 for an exact solution, and NaN without runs.
+
     values : the value on each lattice, the finest first
     """
     # A single table is an exact solution.
@@ -88,10 +90,10 @@ def _slope(logs: np.ndarray) -> float:
     return fit_line(log_predicted, log_measured).slope if has_both.sum() > 2 else NAN
 
 
-def exponent(
-    tables: Lattices, measured: str, predicted: str, varied_columns: Iterable[str]
+def fit_exponent(
+    tables: Lattices, *, measured: str, predicted: str, varied_columns: Iterable[str]
 ) -> Uncertain:
-    """Return the exponent of a measured quantity as a power of a predicted one.
+    """Fit a measured quantity as a power of a predicted one, and return the exponent.
 
     Its uncertainty has two causes: the finite spacing, and the choice of runs. For the second, all
     runs with one value of one of the varied columns are left out, and the largest change of the
@@ -128,6 +130,7 @@ class Evidence:
     def __init__(
         self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
+        """Keep what is given, and prepare the tables of three lattices for each simulation."""
         self.tables = tables
         self.entries = entries
         self.steady = steady
@@ -140,11 +143,13 @@ class Evidence:
     def _three_lattices(self, simulation: str) -> list[pd.DataFrame]:
         """Return the runs of a simulation on three lattices, the finest first.
 
-        Runs that are flagged on the finest lattice are left out.
+        The table of the finest lattice also gets the results of the grid study, as the columns
+        extrapolated_QUANTITY and uncertainty_QUANTITY. Runs that are flagged on the finest lattice
+        are left out.
         """
         finest, coarser = self.tables[simulation], self.tables[f"coarser/{simulation}"]
-        # The grid study has one row for each run (point) and quantity. This is turned into one row
-        # for each run, with the columns extrapolated_QUANTITY and uncertainty_QUANTITY.
+        # The grid study has one row for each run (point) and quantity. Turn it into one row for
+        # each run.
         grid_study_rows = self.tables[f"uncertainties/{simulation}"]
         by_run = grid_study_rows.set_index(["point", "quantity"])
         by_run = by_run[["extrapolated", "uncertainty"]].unstack()
@@ -152,8 +157,9 @@ class Evidence:
         tables = [finest.join(by_run)]
         # Predictions are the same on all lattices, but only the table of the finest has them.
         predictions = finest[finest.columns.difference(coarser.columns)]
-        for _, lattice in coarser.groupby("factor"):
-            tables.append(lattice.reset_index(drop=True).join(predictions))
+        # The factor is the block spacing divided by that of the finest lattice.
+        for _, runs_of_lattice in coarser.groupby("factor"):
+            tables.append(runs_of_lattice.reset_index(drop=True).join(predictions))
         # If a run is flagged on the finest lattice, its numbers do not describe the model.
         has_no_flag = finest["run_flags"].isna() | (finest["run_flags"] == "")
         if has_no_flag.all():
@@ -181,21 +187,23 @@ class Evidence:
         # Combine the finest lattices of all simulations, then the next coarser ones, and so on.
         return [pd.concat(tables_of_rank) for tables_of_rank in zip(*selected, strict=True)]
 
-    def flags_behind(self, source: str) -> str:
+    def sentence_on_flags(self, source: str) -> str:
         """Return a sentence on flagged runs, which claims do not use; empty if there is none.
 
-        source : names of simulations, as text
+        source : text that contains names of simulations; its other words have no influence
         """
         parts = []
-        for name in dict.fromkeys(re.findall(r"\w+", source)):
+        words = dict.fromkeys(re.findall(r"\w+", source))
+        for name in words:
             if name not in self.swept:
                 continue
-            # A run may have several flags, with commas between them.
-            flags_of_runs = self.tables[name]["run_flags"].dropna().astype(str)
+            all_runs = self.tables[name]
+            flags_of_runs = all_runs["run_flags"].dropna().astype(str)
             flags_of_runs = flags_of_runs[flags_of_runs != ""]
-            flags = ", ".join(sorted({*",".join(flags_of_runs).split(",")}))
             if len(flags_of_runs):
-                count = f"{len(flags_of_runs)} of {len(self.tables[name])} runs of {name}"
+                # A run may have several flags, with commas between them.
+                flags = ", ".join(sorted(flags_of_runs.str.split(",").explode().unique()))
+                count = f"{len(flags_of_runs)} of {len(all_runs)} runs of {name}"
                 parts.append(f"{count} are flagged ({flags}) and therefore not used")
         return f"{'; '.join(parts)}." if parts else ""
 
@@ -244,13 +252,14 @@ class Evidence:
             ratio=with_grid_uncertainty(tables, median_ratios),
         )
 
-    def agreed(
+    def holds_in_runs(
         self, simulation: str, where: str, holds: str, decidable: str = "", ends: Sequence[str] = ()
     ) -> list[bool | None]:
         """Return for each run whether a condition holds; None if that is undecided.
 
-        The two finest lattices decide if they agree. Otherwise, or if the run is not decidable, the
-        exact regime decides if ``ends`` is given.
+        The two finest lattices decide if they agree. If they do not, or if lattices cannot decide,
+        the regime of the exact solution decides, provided that ``ends`` is given and that this
+        regime is known.
 
         where : condition over columns that selects runs
         holds : the condition over columns that is judged

@@ -82,10 +82,11 @@ def numbers(
 
 
 def collapse(evidence: Evidence) -> dict[str, float]:
-    """Return the median ratio of L_trans with and without damping, for each boundary condition.
+    """Return by how much damping changes L_trans, for each boundary condition.
 
-    The ratio is L_trans at the largest damping ratio divided by L_trans without damping. Also
-    return the number of scenes, and of those that have both values (runs).
+    ..._change : median ratio of L_trans at the largest damping ratio to L_trans without damping
+    ..._scenes, ..._runs : number of scenes, and of those that have both values of L_trans
+    ratio : the largest damping ratio
     """
     values: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
@@ -95,7 +96,8 @@ def collapse(evidence: Evidence) -> dict[str, float]:
         lengths = table["transition_length"].unstack()
         if lengths.empty:
             return {}
-        ratios = lengths.iloc[:, -1] / lengths.iloc[:, 0]
+        most_damped, undamped = lengths.iloc[:, -1], lengths.iloc[:, 0]
+        ratios = most_damped / undamped
         values[f"{boundary}_change"] = float(ratios.median())
         values[f"{boundary}_runs"] = float(ratios.count())
         values[f"{boundary}_scenes"] = float(len(ratios))
@@ -105,7 +107,8 @@ def collapse(evidence: Evidence) -> dict[str, float]:
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """Return the best fit to the published figure, as numbers for the text.
 
-    low, high : ends of the confidence region of the damping ratio, at 95 %
+    ratio, low, high : damping ratio, and the ends of its confidence region at 95 %
+    degrees : degrees of freedom
     difference : chi-square with the other release rule, minus chi-square of the best fit
     """
     fits = infer_parameters(evidence.tables["published_figure"])
@@ -129,8 +132,9 @@ def never_arrives(evidence: Evidence) -> dict[str, float]:
     """
     judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
     medians = {}
-    for fraction, median in transition.median_ratios(judged.combinations).items():
-        # Lattices are measured at their last release. They have a text instead of a fraction.
+    for fraction, median in transition.median_ratio_by_fraction(judged.combinations).items():
+        # Leave out lattices. They are measured at their last release, and have this text instead of
+        # a fraction.
         if isinstance(fraction, float):
             medians[f"median_{100.0 * fraction:.0f}"] = median
     return medians

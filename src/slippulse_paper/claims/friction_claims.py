@@ -13,7 +13,6 @@ from .pulse_claims import TWO_WAY
 # Rate strengthening divided by the critical one: the most negative and the most positive value of
 # the runs in which no block of a pulse would slide back.
 STRONGEST_RATES = (-0.5, 0.9)
-PULSE_SIZES = ("width", "slip")
 # The pre-stress at which the front speed under slip weakening is reported.
 SLIP_WEAKENING_LEVEL = 0.5
 
@@ -56,8 +55,10 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
 def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether ruptures under other friction laws become pulses.
 
-    Runs in which blocks would slide back are left out, and so are ruptures that stop at once.
+    A rupture counts as a pulse unless its regime is "crack". Runs in which blocks would slide back
+    are left out, and so are ruptures that stop at once.
     """
+    # Where the column over_critical is 0, friction is constant, which is not another law.
     linear_in_rate = evidence.tables["rate_dependence"].query(
         "role == 'lattice' and over_critical != 0"
     )
@@ -71,13 +72,15 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     further["left out, since blocks would slide back"] = float(slides_back.sum())
     stopped = len(other_laws) - len(ruptures)
     further["left out, since fracture energy stops them"] = float(stopped)
+    # The condition is that only some friction laws were tested.
     return Qualitative(decided=regimes != "crack", condition=True, further=further)
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether a pulse in zero pre-stress decays under rate strengthening, with held stress.
 
-    It decays if its largest velocity falls by more than the tolerance.
+    It decays if its largest velocity falls by more than the tolerance, on the finest and on the
+    coarsest lattice. Each value of the rate strengthening counts as one run.
     """
     table = evidence.tables["rate_dependence"].query("role == 'arrest'")
     # Without rate strengthening the pulse is steady from this time on.
@@ -90,6 +93,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     steady_count_by_spacing = (~with_strengthening).sum()
     words = "laws, by their strengthening, that leave a steady pulse"
+    # The condition is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),
         condition=True,
@@ -100,12 +104,12 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether other laws change width and slip of pulses by more than the tolerance.
 
-    Pulses at STRONGEST_RATES are compared with those at constant friction and the same level of
-    pre-stress. The sentences of the claim also quote front speeds under slip weakening.
+    Pulses at STRONGEST_RATES of rate strengthening are compared with those at constant friction and
+    the same level of pre-stress. Sentences also quote front speeds under slip weakening.
     """
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
     # The column over_critical has the rate strengthening divided by the critical one.
-    sizes = runs.set_index(["level", "over_critical"])[[f"pulse_{size}" for size in PULSE_SIZES]]
+    sizes = runs.set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
     at_constant_friction = sizes.xs(0.0, level="over_critical")
     changes_by_rate = []
     for rate in STRONGEST_RATES:
@@ -115,7 +119,8 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     is_changed = changes > evidence.tolerance(id)
     smallest = changes.min()
     further = {
-        f"smallest change of the {size}": float(smallest[f"pulse_{size}"]) for size in PULSE_SIZES
+        "smallest change of the width": float(smallest["pulse_width"]),
+        "smallest change of the slip": float(smallest["pulse_slip"]),
     }
     slip_weakening = evidence.tables["friction_laws"].query(
         f"law == 'slip_weakening' and level == {SLIP_WEAKENING_LEVEL}"
@@ -125,8 +130,10 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
         "slowest": speeds.min(),
         "fastest": speeds.max(),
         "level": SLIP_WEAKENING_LEVEL,
+        # The paper's formula at constant friction, without damping.
         "undamped": 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2),
     }
+    # The condition is that only one friction law was tested.
     return Qualitative(
         decided=is_changed.to_numpy().ravel(),
         condition=True,

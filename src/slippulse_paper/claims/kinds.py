@@ -57,7 +57,11 @@ class Claim(ABC):
         """Return the verdict and the numbers, by their names in claims.json."""
 
     def verdict(self, tolerance: float | None = None) -> str:
-        """Return the verdict at the tolerance of the claim, or at another tolerance."""
+        """Return the verdict at the tolerance of the claim, or at another tolerance.
+
+        An additional requirement (``extra_verdict``) can make the verdict worse. A claim that fails
+        gets its own verdict for this case (``failing``).
+        """
         tolerance = self.tolerance if tolerance is None else tolerance
         verdict = self.own_verdict(tolerance)
         if self.extra_verdict is not None:
@@ -77,15 +81,15 @@ class Claim(ABC):
         for index in range(len(factors) - 1):
             below, above = verdicts[index], verdicts[index + 1]
             if below != above:
-                factor = self._factor_of_flip(factors[index], factors[index + 1], below)
+                factor = self._bisect_for_flip(factors[index], factors[index + 1], below)
                 tolerance = float(self.tolerance * factor)
                 flips.append({"tolerance": tolerance, "below": below, "above": above})
         return flips
 
-    def _factor_of_flip(self, low: float, high: float, verdict_at_low: str) -> float:
-        """Return the tolerance at which the verdict changes, divided by that of the claim.
+    def _bisect_for_flip(self, low: float, high: float, verdict_at_low: str) -> float:
+        """Find by bisection where the verdict changes, as a factor of the tolerance of the claim.
 
-        low, high : factors of the tolerance between which the verdict changes
+        low, high : factors between which the verdict changes
         """
         for _ in range(BISECTIONS):
             middle = np.sqrt(low * high)
@@ -124,7 +128,10 @@ class Qualitative(Claim):
         return {"held": held, "failed": failed, "undecided": undecided}
 
     def own_verdict(self, tolerance: float) -> str:
-        """Return the verdict from the numbers of runs; the tolerance has no influence."""
+        """Return the verdict from the numbers of runs; the tolerance has no influence.
+
+        If the claim holds, it has a caveat if a few runs are undecided, or if it needs a condition.
+        """
         counts, run_count = self.counts(), len(self.decided)
         if not run_count:
             return rules.NOT_TESTABLE
@@ -184,9 +191,9 @@ class Equation(Claim):
         return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
-        """Return the numbers of one run, and how many runs have numbers.
+        """Return the numbers of the worst run, and how many runs have numbers.
 
-        The run is one with the worst verdict, and among these the one with the largest deviation.
+        Of all runs with the worst verdict, the worst run is the one with the largest deviation.
         """
         deviations, uncertainties = self.relative()
         usable_count = int(np.isfinite(deviations + uncertainties).sum())
@@ -196,15 +203,15 @@ class Equation(Claim):
             "left_out": len(deviations) - usable_count,
         }
         if usable_count:
-            worst = self.own_verdict(self.tolerance)
             verdicts = self.verdicts(self.tolerance)
-            worst_runs = [run for run, verdict in enumerate(verdicts) if verdict == worst]
-            run = max(worst_runs, key=lambda run: deviations[run])
+            worst_verdict = rules.worst_tested(verdicts)
+            worst_runs = [run for run, verdict in enumerate(verdicts) if verdict == worst_verdict]
+            worst_run = max(worst_runs, key=lambda run: deviations[run])
             fields |= {
-                "predicted": float(self.predicted[run]),
-                "measured": float(self.measured[run]),
-                "uncertainty": float(self.uncertainty[run]),
-                "deviation": float(deviations[run]),
+                "predicted": float(self.predicted[worst_run]),
+                "measured": float(self.measured[worst_run]),
+                "uncertainty": float(self.uncertainty[worst_run]),
+                "deviation": float(deviations[worst_run]),
             }
         return fields | dict(self.counts)
 
@@ -234,7 +241,11 @@ class Approximate(Claim):
         return rules.verdict_on_number(median_deviation, uncertainty, tolerance)
 
     def fields(self) -> dict[str, Any]:
-        """Return the medians and the spread of the runs; only counts if no run has a number."""
+        """Return the median ratio (measured), and statistics of the deviations of the runs.
+
+        These are the median (deviation), the 90th percentile (ninety) and the largest. They are
+        left out if no run has a number. The fields exact_... have the deviations from exact theory.
+        """
         usable_deviations = self.deviations[np.isfinite(self.deviations)]
         exact_median, exact_largest = self.from_exact
         fields: dict[str, Any] = {
@@ -283,7 +294,10 @@ class Reading(Claim):
         return rules.REPRODUCED if p_value >= tolerance else rules.FAILED
 
     def fields(self) -> dict[str, Any]:
-        """Return the chi-square as measured, and its expectation as predicted."""
+        """Return the chi-square (measured), its expected value (predicted), and the p-value.
+
+        The p-value takes the place of the deviation, because it is compared with the tolerance.
+        """
         return {
             "verdict": self.verdict(),
             "predicted": float(self.degrees_of_freedom),

@@ -2,12 +2,12 @@
 
 The table `layer` has one row for each run, grid and station. A station is a position on the fault
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
-The part far has the same pulses as the part pulse, farther away and on two grids. A function that
-judges a claim takes the evidence and the id of the claim, and returns the result.
+The column part names a group of runs; `studies.layer.table` describes all of them. The part far has
+the same pulses as the part pulse, farther away and on two grids. A function that judges a claim
+takes the evidence and the id of the claim, and returns the result.
 """
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -21,7 +21,9 @@ from .rules import Uncertain
 # outcomes leave this open, because a pulse died early or had not settled.
 STEADY_BY_OUTCOME = {"steady": True, "growing": False, "dying": False}
 CONVERGED_QUANTITIES = ("speed", "pulse_width", "pulse_slip")
+# Columns that identify a run within its part. The side is LEFT or RIGHT.
 RUN_COLUMNS = ["gamma", "tau0", "weakening", "coupling", "side"]
+LEFT, RIGHT = -1.0, 1.0
 # Pulses with a smaller fracture energy, divided by the energy that the layer releases, are brittle.
 BRITTLE_ENERGY = 0.4
 # The paper's transition time, pi/sqrt(gamma), divided by the time in which a shear wave runs to the
@@ -35,7 +37,7 @@ RESOLVED_CELLS = 2.0
 def rows_at_station(evidence: Evidence, before_last: int = 0) -> pd.DataFrame:
     """Return the rows of all runs and grids at one station.
 
-    before_last : number of stations between the chosen one and the last one; 0 for the last one
+    before_last : 0 for the last station, 1 for the second last, and so on
     """
     rows = evidence.tables["layer"].query("part not in ('field', 'step', 'patch')")
     return rows[rows["station"] == rows["station"].max() - before_last]
@@ -53,24 +55,29 @@ def finest_rows(rows: pd.DataFrame, part: str, coarser: int = 0) -> pd.DataFrame
     return rows.groupby(RUN_COLUMNS, sort=False).nth(-1 - coarser).set_index(RUN_COLUMNS)
 
 
-def change(rows: pd.DataFrame, part: str, quantity: str) -> pd.Series:
-    """Return the relative change of a quantity from the second finest to the finest grid."""
+def change_by_refinement(rows: pd.DataFrame, part: str, quantity: str) -> pd.Series:
+    """Return the relative change of a quantity from the second finest to the finest grid.
+
+    There is one value for each run of the part.
+    """
     on_finest = finest_rows(rows, part)[quantity]
     on_second_finest = finest_rows(rows, part, coarser=1)[quantity]
     return (on_finest / on_second_finest - 1.0).abs()
 
 
 def change_with_distance(evidence: Evidence, quantity: str, before_last: int = 1) -> pd.Series:
-    """Return the relative change of a quantity on the way to the last station of the part far.
+    """Return the relative change of a quantity from an earlier station to the last one.
 
-    before_last : number of stations before the last one at which the change begins
+    There is one value for each pulse of the part far.
+
+    before_last : 1 if the earlier station is the second last, and so on
     """
     last = finest_rows(rows_at_station(evidence), "far")[quantity]
     earlier = finest_rows(rows_at_station(evidence, before_last), "far")[quantity]
     return (last / earlier - 1.0).abs()
 
 
-def crossings(pulses: pd.DataFrame) -> pd.Series:
+def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
     """Return the sliding time divided by the time that a shear front needs to cross the layer."""
     return pulses["pulse_width"] / crossing_width(pulses)
 
@@ -87,7 +94,10 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
 
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that ruptures under a displacement boundary turn into steady pulses."""
+    """Judge that ruptures under a displacement boundary turn into steady pulses.
+
+    Each pulse of the part pulse is judged far away, by the same pulse of the part far.
+    """
     pulses = finest_rows(rows_at_station(evidence), "pulse")
     decided = steady_on_two_grids(evidence, "far", evidence.tolerance(id))
     # The part far has one more pulse, which belongs to the part step.
@@ -97,11 +107,15 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that pulses are also steady if the strength depends on the normal stress."""
+    """Judge that pulses are also steady if the strength depends on the normal stress.
+
+    The column coupling has the strength of this dependence.
+    """
     decided = steady_on_two_grids(evidence, "coupled", evidence.tolerance(id))
     coupled = finest_rows(rows_at_station(evidence), "coupled")
-    steady = coupled[[answer is True for answer in decided]]
-    failed = coupled[[answer is False for answer in decided]]
+    # A pulse that is undecided (None) is in neither group.
+    steady = coupled[decided.eq(True)]
+    failed = coupled[decided.eq(False)]
     return Qualitative(
         decided=list(decided),
         template_values={
@@ -119,13 +133,16 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_free_top(evidence: Evidence, id: str) -> Approximate:
-    """Judge that pulses end after one crossing of the layer also if its top may rise."""
+    """Judge that pulses end after one crossing of the layer also if its top may rise.
+
+    A crossing is the time that a shear front needs to cross the layer.
+    """
     rows = rows_at_station(evidence)
     free, held = finest_rows(rows, "free"), finest_rows(rows, "held")
-    ratio, held_ratio = crossings(free), crossings(held)
+    ratio, held_ratio = sliding_in_crossings(free), sliding_in_crossings(held)
     longer = times_longer_with_free_top(rows)
     deviations = (ratio - 1.0).abs()
-    uncertainty = float((change(rows, "free", "pulse_width") * ratio).max())
+    uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * ratio).max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
@@ -154,12 +171,13 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     In uniform pre-stress, a rupture must be a crack. If there is a barrier on one side, it must
     stop on this side and become a pulse on the other.
     """
-    is_crack, is_stopped = (
-        on_two_grids(partial(regime, evidence)) for regime in (never_sticks, stops_on_one_side)
-    )
-    barriers = finest_rows(rows_at_station(evidence), "barrier")
-    left = barriers.xs(-1.0, level="side")
-    relative_path = -left["end"] / left["balance_distance"]
+    is_crack = on_two_grids(lambda coarser: never_sticks(evidence, coarser))
+    is_stopped = on_two_grids(lambda coarser: stops_on_one_side(evidence, coarser))
+    rows = rows_at_station(evidence)
+    left_fronts = finest_rows(rows, "barrier").xs(LEFT, level="side")
+    # The final front position on the left is negative.
+    relative_path = -left_fronts["end"] / left_fronts["balance_distance"]
+    first_stick_change = change_by_refinement(rows, "barrier", "first_stick")
     further = {
         "cracks that do not stick, in uniform pre-stress": float(is_crack.counts()["held"]),
         "stopped on one side by a barrier": float(is_stopped.counts()["held"]),
@@ -170,9 +188,7 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
         template_values={
             "stop_low": float(relative_path.min()),
             "stop_high": float(relative_path.max()),
-            "stick_change": float(
-                change(rows_at_station(evidence), "barrier", "first_stick").max()
-            ),
+            "stick_change": float(first_stick_change.max()),
         },
     )
 
@@ -195,44 +211,65 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 
     part : far, damped or coupled
     """
-    last, before = rows_at_station(evidence), rows_at_station(evidence, before_last=1)
+    at_last, at_second_last = rows_at_station(evidence), rows_at_station(evidence, before_last=1)
     compared = ["speed", "pulse_slip"]
-    steady = []
+    is_steady_on_grids = []
     for coarser in (0, 1):
-        pulses, pulses_before = (finest_rows(rows, part, coarser) for rows in (last, before))
-        drift = (pulses[compared] / pulses_before[compared] - 1.0).abs()
-        steady.append((drift < tolerance).all(axis=1) & (pulses["sliding_again"] == 0.0))
-    split_grids = last[last["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
-    is_whole = split_grids.reindex(steady[0].index) == 0
-    is_decided = (steady[0] == steady[1]) & is_whole
-    return steady[0].astype(object).where(is_decided, None)
+        pulses = finest_rows(at_last, part, coarser)
+        pulses_before = finest_rows(at_second_last, part, coarser)
+        change = (pulses[compared] / pulses_before[compared] - 1.0).abs()
+        is_steady = (change < tolerance).all(axis=1) & (pulses["sliding_again"] == 0.0)
+        is_steady_on_grids.append(is_steady)
+    on_finest, on_second_finest = is_steady_on_grids
+    # The position is NaN on a grid on which the pulse does not split.
+    split_count = at_last[at_last["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
+    never_splits = split_count.reindex(on_finest.index) == 0
+    is_decided = (on_finest == on_second_finest) & never_splits
+    return on_finest.astype(object).where(is_decided, None)
+
+
+def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
+    """Return the pulses of the part far on their finest grids, with columns on how they split.
+
+    split_at, coarse_split_at : position of the split on the finest and on the second finest grid;
+        NaN if there is none. The unit is H at the largest gamma. At a smaller gamma it is longer,
+        by the same factor as the position of the last station.
+    cells_in_weakening : number of cells in gamma d_c, the length over which the strength falls
+    is_narrow : True at the largest gamma, at which pulses are narrowest
+    is_steady : True if `steady_on_two_grids` is True at this tolerance
+    """
+    rows = rows_at_station(evidence)
+    followed = finest_rows(rows, "far")
+    unit = followed["sample_position"] / followed["sample_position"].min()
+    on_second_finest = finest_rows(rows, "far", coarser=1).reindex(followed.index)
+    gamma = followed.index.get_level_values("gamma")
+    weakening = followed.index.get_level_values("weakening")
+    return followed.assign(
+        split_at=followed["split_position"] / unit,
+        coarse_split_at=on_second_finest["split_position"] / unit,
+        cells_in_weakening=gamma * weakening * followed["cells"],
+        is_narrow=gamma == gamma.max(),
+        is_steady=steady_on_two_grids(evidence, "far", tolerance).eq(True),
+    )
 
 
 def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses of the part far split, with which fracture energies, and where.
 
-    Positions are those on the finest grid and on the next coarser one, in units of H at the largest
-    gamma, and in longer units at a smaller gamma. Names with wide_ belong to pulses that split at a
-    smaller gamma. One more pulse was followed, which belongs to the part step. With damping, all
-    pulses that split are counted again. Steady pulses are unresolved if less than RESOLVED_CELLS
-    cells of their finest grid are in the length gamma d_c.
+    pulses, followed, split : number of pulses of the part pulse, of those that were followed in the
+        part far, and of those that split
+    distance, near_distance : position of the last station of the parts far and pulse, at the
+        largest gamma
+    narrow_..., wide_... : of pulses that split at the largest gamma, and at a smaller gamma
+    split_..., coarse_split_... : range of the positions in `followed_pulses`, at the largest gamma
+    step_... : of the pulse of the part step, which was followed, too, but is not counted
+    damped, damped_steady : number of pulses that were followed with damping, and of steady ones
+    unresolved... : of steady pulses with less than RESOLVED_CELLS cells in the length gamma d_c
 
     tolerance : see `steady_on_two_grids`
     """
-    rows = rows_at_station(evidence)
-    pulses, followed = (finest_rows(rows, part) for part in ("pulse", "far"))
-    is_steady = [answer is True for answer in steady_on_two_grids(evidence, "far", tolerance)]
-    distance = float(followed["sample_position"].min())
-    unit = followed["sample_position"] / distance
-    coarser = finest_rows(rows, "far", coarser=1)["split_position"]
-    gammas, weakenings = (followed.index.get_level_values(name) for name in ("gamma", "weakening"))
-    followed = followed.assign(
-        split_at=followed["split_position"] / unit,
-        coarse_split_at=coarser.reindex(followed.index) / unit,
-        cells_in_weakening=gammas * weakenings * followed["cells"],
-        is_narrow=gammas == gammas.max(),
-        is_steady=is_steady,
-    )
+    pulses = finest_rows(rows_at_station(evidence), "pulse")
+    followed = followed_pulses(evidence, tolerance)
     is_counted = followed.index.isin(pulses.index)
     counted, step = followed[is_counted], followed[~is_counted]
     split = counted[counted["split_at"].notna()]
@@ -257,9 +294,9 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
         "wide_coarse_splits": float(wide["coarse_split_at"].count()),
         "step_energy": float(step["fracture_energy"].min()),
         "step_split": float(step["split_at"].min()),
-        "distance": distance,
+        "distance": float(followed["sample_position"].min()),
         "damped": float(len(damped)),
-        "damped_steady": float(sum(answer is True for answer in damped)),
+        "damped_steady": float(damped.eq(True).sum()),
         "near_distance": float(pulses["sample_position"].min()),
         "resolved_cells": RESOLVED_CELLS,
         "unresolved": float(len(unresolved)),
@@ -270,7 +307,7 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
 
 
 def never_sticks(evidence: Evidence, coarser: int) -> pd.Series:
-    """Return True for each rupture in uniform pre-stress that never sticks.
+    """Return for each rupture in uniform pre-stress whether it never sticks.
 
     coarser : see `finest_rows`
     """
@@ -279,19 +316,19 @@ def never_sticks(evidence: Evidence, coarser: int) -> pd.Series:
 
 
 def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
-    """Return True for each rupture that stops at a barrier and has a pulse on the other side.
+    """Return for each rupture with a barrier on the left whether it stops there.
 
-    The left front must stop before the balance position. The pulse on the right must have passed
-    the second last station by the end.
+    The left front must stop before the balance position. On the right there must be a pulse, which
+    must have passed the second last station by the end.
 
     coarser : see `finest_rows`
     """
-    last, before = (
-        finest_rows(rows_at_station(evidence, before_last), "barrier", coarser)
-        for before_last in (0, 1)
-    )
-    left, passed = last.xs(-1.0, level="side"), before.xs(1.0, level="side")
-    return (left["end"] > -left["balance_distance"]) & np.isfinite(passed["pulse_width"])
+    at_last = finest_rows(rows_at_station(evidence), "barrier", coarser)
+    at_second_last = finest_rows(rows_at_station(evidence, before_last=1), "barrier", coarser)
+    left, right = at_last.xs(LEFT, level="side"), at_second_last.xs(RIGHT, level="side")
+    has_stopped = left["end"] > -left["balance_distance"]
+    # A pulse has no width at a station that it has not passed.
+    return has_stopped & np.isfinite(right["pulse_width"])
 
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
@@ -301,15 +338,17 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
     # The uncertainty is the largest change of a run from the second finest to the finest grid.
-    uncertainty = float((change(rows, "pulse", "pulse_width") * ratio).max())
+    uncertainty = float((change_by_refinement(rows, "pulse", "pulse_width") * ratio).max())
     speed_ratio = pulses["speed"] / pulses["paper_speed"]
     slip_ratio = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
     energies = pulses["fracture_energy"]
+    ratio_to_one_dimension = pulses["pulse_width"] / pulses["damped_pulse_width"]
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(ratio.median()), uncertainty),
+        # The paper makes no claim about two dimensions.
         failing=rules.BEYOND,
         further={
             "median in the plane, divided by the formula: speed": float(speed_ratio.median()),
@@ -320,12 +359,8 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         template_values={
             "least": float(energies.min()),
             "most": float(energies.max()),
-            "one_dimension_low": float(
-                (pulses["pulse_width"] / pulses["damped_pulse_width"]).min()
-            ),
-            "one_dimension_high": float(
-                (pulses["pulse_width"] / pulses["damped_pulse_width"]).max()
-            ),
+            "one_dimension_low": float(ratio_to_one_dimension.min()),
+            "one_dimension_high": float(ratio_to_one_dimension.max()),
         },
     )
 
@@ -333,10 +368,11 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are steady if the fracture energy is below the energy that is released.
 
-    Fracture energies are divided by the largest energy that the layer can release, so the limit is
-    1. Above the limit no pulse can exist. An outcome counts if two grids agree on it. The claim has
-    a caveat if a pulse that enters a very different pre-stress has not become steady at the last
-    station, or if pulses of a point split farther away (see `map_numbers`).
+    Each point of the map in `layer_map` below this limit counts as one run. Fracture energies are
+    divided by the largest energy that the layer can release, so the limit is 1. Above the limit no
+    pulse can exist. An outcome counts if two grids agree on it. The claim has a caveat if a pulse
+    that enters a very different pre-stress has not become steady at the last station, or if pulses
+    of a point split farther away (see `map_numbers`).
     """
     points = evidence.tables["layer_map"]
     agrees = points["outcome"] == points["coarse_outcome"]
@@ -368,27 +404,31 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 
 
 def map_numbers(evidence: Evidence) -> dict[str, float]:
-    """Return the conditions of the runs of `layer_map`, and how many of its pulses split.
+    """Return the conditions of the runs of `layer_map`, and how many of its pulses would split.
 
-    Positions are in units of H at the largest gamma, and in longer units at a smaller gamma. Little
-    fracture energy makes pulses split. So a point of the map counts (splitting_points) if, at its
-    gamma and level, a pulse of the part far splits on any grid and needs no less fracture energy.
-    The first split of any of these pulses is at the distance splitting_from.
+    The pulses of the map are not followed as far as those of the part far. Little fracture energy
+    makes pulses split. So the pulses of a point count as splitting if one of the part far splits on
+    any grid, with the same gamma and level and at least the same fracture energy.
+
+    splitting_points : number of these points
+    splitting_from : smallest distance at which such a pulse of the part far splits
+
+    Distances are in units of H at the largest gamma, and in longer units at a smaller gamma.
     """
     points = evidence.tables["layer_map"]
-    narrowest = points.loc[points["gamma"].idxmax()]
+    at_largest_gamma = points.loc[points["gamma"].idxmax()]
     conditions = ("level_below", "level_above", "step_position", "last_position", "coarse_cells")
-    numbers = {name: float(narrowest[name]) for name in (*conditions, "cells")}
+    numbers = {name: float(at_largest_gamma[name]) for name in (*conditions, "cells")}
     far = rows_at_station(evidence).query("part == 'far'").dropna(subset=["split_position"])
     positions = []
     for point in points[points["fracture_energy"] < 1.0].itertuples():
-        is_near = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
-        split = far[is_near & (far["fracture_energy"] >= point.fracture_energy)]
+        is_alike = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
+        split = far[is_alike & (far["fracture_energy"] >= point.fracture_energy)]
         if len(split):
-            stretch = point.step_position / numbers["step_position"]
-            positions.append(float(split["split_position"].min()) / stretch)
+            unit = point.step_position / numbers["step_position"]
+            positions.append(float(split["split_position"].min()) / unit)
     return numbers | {
-        "level": float(narrowest["tau0"]),
+        "level": float(at_largest_gamma["tau0"]),
         "splitting_points": float(len(positions)),
         "splitting_from": min(positions, default=np.nan),
     }
@@ -397,10 +437,10 @@ def map_numbers(evidence: Evidence) -> dict[str, float]:
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Return the numbers for the section on the layer in two dimensions.
 
-    Most of them are the smallest and the largest value of a quantity (NAME_low and NAME_high),
-    which are defined in `pulse_quantities`. Others are changes from the second finest to the finest
-    grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers`, `across_a_step` and
-    `map_numbers` (map_NAME).
+    Most of them are the smallest and the largest value of a quantity (NAME_low and NAME_high).
+    `pulse_quantities` explains these quantities. Others are changes from the second finest to the
+    finest grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers`, `across_a_step`
+    and `map_numbers` (map_NAME).
     """
     rows = rows_at_station(evidence)
     pulses = finest_rows(rows, "pulse")
@@ -418,12 +458,12 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     }
     quantities = pulse_quantities(pulses)
     quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
-    quantities["free"] = crossings(finest_rows(rows, "free"))
+    quantities["free"] = sliding_in_crossings(finest_rows(rows, "free"))
     quantities["longer"] = times_longer_with_free_top(rows)
     for name, values in quantities.items():
         numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
     for quantity in CONVERGED_QUANTITIES:
-        numbers[f"{quantity}_change"] = float(change(rows, "pulse", quantity).max())
+        numbers[f"{quantity}_change"] = float(change_by_refinement(rows, "pulse", quantity).max())
     numbers |= {f"map_{name}": value for name, value in map_numbers(evidence).items()}
     return numbers | speeds_above_waves(evidence) | far_numbers(evidence) | across_a_step(evidence)
 
@@ -447,9 +487,11 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
 def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     """Return quantities of pulses by name, each with one value for each pulse.
 
-    width, slip : compared with the paper's formulas
+    width : width by the paper's formula divided by the pulse width
+    slip : pulse slip divided by the slip by the formula
     brittle_... : for pulses with the smallest fracture energy
-    line_... : pulses in one dimension with the same friction, compared with the paper's formulas
+    line_... : for pulses in one dimension with the same friction; width and slip are divided by
+        those by the formulas
     wider : pulse width divided by the width in one dimension
     less_damped : width in one dimension divided by the one with more damping
     crossing : pulse width divided by `crossing_width`; brittle_crossing for all fracture energies
@@ -480,8 +522,8 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
         "line_slip": varied["damped_pulse_slip"] / varied["paper_pulse_slip"],
         "wider": pulses["pulse_width"] / pulses["damped_pulse_width"],
         "less_damped": varied["less_damped_pulse_width"] / varied["damped_pulse_width"],
-        "crossing": crossings(pulses),
-        "brittle_crossing": crossings(brittle),
+        "crossing": sliding_in_crossings(pulses),
+        "brittle_crossing": sliding_in_crossings(brittle),
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
         "thinnest_width": with_smallest_gamma(varied)["pulse_width"],
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
@@ -490,15 +532,16 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
 
 
 def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
-    """Return the largest speed of a pulse, on a coarse and on the finest grid of its run.
+    """Return the speeds of the fastest pulse on its coarsest and on its finest grid.
 
-    The speed damped_speed is the largest one with damping, on the finest grids.
+    Also return the largest speed of all pulses with damping (damped_speed), on the finest grids.
     """
     at_station = rows_at_station(evidence)
     rows = at_station.query("part == 'pulse'")
     fastest = rows.loc[rows["speed"].idxmax()]
-    runs = rows[(rows[RUN_COLUMNS] == fastest[RUN_COLUMNS]).all(axis=1)].sort_values("cells")
-    coarsest, finest = runs.iloc[0], runs.iloc[-1]
+    is_fastest_run = (rows[RUN_COLUMNS] == fastest[RUN_COLUMNS]).all(axis=1)
+    by_grid = rows[is_fastest_run].sort_values("cells")
+    coarsest, finest = by_grid.iloc[0], by_grid.iloc[-1]
     return {
         "coarse_cells": float(coarsest["cells"]),
         "coarse_speed": float(coarsest["speed"]),
@@ -509,56 +552,71 @@ def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
 
 
 def far_numbers(evidence: Evidence) -> dict[str, float]:
-    """Return the numbers of pulses that were followed farther, and of those that split.
+    """Return numbers on the pulses of the part far, which were followed farther.
 
-    The largest changes are those of pulses that are steady: of speed and slip between the last two
-    stations (far_speed, far_slip), and of the slip from the first station on (from_near_slip).
+    far_speed, far_slip : largest relative change of speed and slip between the last two stations
+    from_near_slip : largest relative change of slip between the first and the last station
+
+    These are about pulses that stay whole. Numbers on those that split are in `split_pulses`.
     """
     numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
     numbers["drawn_split"] = split_of_drawn_pulse(evidence)
-    is_steady = [answer is True for answer in steady_on_two_grids(evidence, "far", np.inf)]
-    for name, quantity, before_last in (
-        ("far_speed", "speed", 1),
-        ("far_slip", "pulse_slip", 1),
-        ("from_near_slip", "pulse_slip", 2),
-    ):
-        changes = change_with_distance(evidence, quantity, before_last)
-        numbers[name] = float(changes[is_steady].max())
-    return numbers
+    # With an infinite tolerance, this selects pulses that do not split and do not slide again.
+    is_whole = steady_on_two_grids(evidence, "far", tolerance=np.inf).eq(True)
+    speed_change = change_with_distance(evidence, "speed", before_last=1)
+    slip_change = change_with_distance(evidence, "pulse_slip", before_last=1)
+    slip_change_from_first = change_with_distance(evidence, "pulse_slip", before_last=2)
+    return numbers | {
+        "far_speed": float(speed_change[is_whole].max()),
+        "far_slip": float(slip_change[is_whole].max()),
+        "from_near_slip": float(slip_change_from_first[is_whole].max()),
+    }
 
 
 def split_of_drawn_pulse(evidence: Evidence) -> float:
-    """Return where the pulse of the part field splits on its finest grid, in units of H."""
+    """Return where the pulse of the part field splits on its finest grid, in units of H.
+
+    This pulse is drawn in a figure. It was followed in the part far. NaN if it does not split.
+    """
     drawn = evidence.tables["layer"].query("part == 'field'").iloc[0]
     far = rows_at_station(evidence).query("part == 'far'").sort_values("cells")
-    case = ["gamma", "tau0", "weakening"]
-    is_drawn = np.isclose(far[case].to_numpy(float), drawn[case].to_numpy(float)).all(axis=1)
+    parameters = ["gamma", "tau0", "weakening"]
+    drawn_parameters = drawn[parameters].to_numpy(float)
+    is_drawn = np.isclose(far[parameters].to_numpy(float), drawn_parameters).all(axis=1)
+    # The finest grid comes last.
     positions = far["split_position"][is_drawn].dropna()
     return float(positions.iloc[-1]) if len(positions) else np.nan
 
 
 def spread_with_level(pulses: pd.DataFrame) -> float:
-    """Return by which factor the level changes the width, at one gamma and fracture energy."""
+    """Return the largest factor by which pulse widths differ only because of the pre-stress level.
+
+    Pulses with the same gamma and fracture energy are compared.
+    """
+    gammas = pulses.index.get_level_values("gamma")
     # Fracture energies that are equal may differ by rounding.
     energies = pulses["fracture_energy"].round(6)
-    widths = pulses["pulse_width"].groupby([pulses.index.get_level_values("gamma"), energies])
-    return float((widths.max() / widths.min()).max())
+    same_otherwise = pulses["pulse_width"].groupby([gammas, energies])
+    return float((same_otherwise.max() / same_otherwise.min()).max())
 
 
 def across_a_step(evidence: Evidence) -> dict[str, float]:
     """Return the final slip of pulses that enter another pre-stress, and of uniform runs.
 
     upwards, downwards : final slip of the pulse that enters a higher or a lower pre-stress
-    uniform_higher, uniform_lower : final slip in these two levels of pre-stress from the start
-    upwards_difference, downwards_difference : relative difference between the two slips, on the
-        grid where it is larger
+    uniform_higher, uniform_lower : final slip of a pulse in this pre-stress from the start
+    upwards_difference, downwards_difference : relative difference between the slip of the pulse
+        that enters a pre-stress and of the one in it from the start, on the grid where it is larger
     """
     rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
-    # The slip at the last station, by grid, level before the step and level beyond it.
+    # The slip at the last station, by grid, level before the step and level beyond it. In a uniform
+    # run both levels are equal.
     final_slip = rows.groupby(["cells", "before", "tau0"])["pulse_slip"].last()
-    grids = [final_slip[cells] for cells in sorted(rows["cells"].unique())]
-    finest = grids[-1]
+    slips_on_grids = [final_slip[cells] for cells in sorted(rows["cells"].unique())]
+    finest = slips_on_grids[-1]
+    differences_upwards = [slip[low, high] / slip[high, high] - 1.0 for slip in slips_on_grids]
+    differences_downwards = [slip[high, low] / slip[low, low] - 1.0 for slip in slips_on_grids]
     return {
         "lower": low,
         "higher": high,
@@ -567,6 +625,6 @@ def across_a_step(evidence: Evidence) -> dict[str, float]:
         "downwards": float(finest[high, low]),
         "uniform_lower": float(finest[low, low]),
         "uniform_higher": float(finest[high, high]),
-        "upwards_difference": max(abs(slip[low, high] / slip[high, high] - 1.0) for slip in grids),
-        "downwards_difference": max(abs(slip[high, low] / slip[low, low] - 1.0) for slip in grids),
+        "upwards_difference": max(map(abs, differences_upwards)),
+        "downwards_difference": max(map(abs, differences_downwards)),
     }

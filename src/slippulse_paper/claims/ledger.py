@@ -63,12 +63,16 @@ class Entry(SimpleNamespace):
         return "; ".join(part for part in parts if part)
 
     def _other_tolerances(self) -> list[str]:
-        """Return the verdicts at similar tolerances, and at the earlier tolerance."""
+        """Return the verdicts at similar tolerances, and at the earlier tolerance.
+
+        A text is, for example, "with a tolerance below 0.14: not reproduced".
+        """
         parts = []
+        # A flip has a tolerance at which the verdict changes, and the verdicts below and above it.
         for flip in self.flips_at:
-            # The verdict changes at this tolerance. The other verdict holds on that side of it on
-            # which the tolerance of the claim is not.
             ratio = flip["tolerance"] / self.tolerance
+            # The tolerance of the claim is on one side of the flip. The verdict on the other side
+            # is reported.
             other_side = "above" if ratio > 1.0 else "below"
             if 1.0 / TOLERANCE_BAND <= ratio <= TOLERANCE_BAND:
                 limit = number(flip["tolerance"], 3)
@@ -230,9 +234,9 @@ class Ledger:
         return None
 
     def listed(self, id: str, words: str) -> str:
-        """Return a list of some further numbers of a claim, such as "12 *cracks*; 3 *pulses*".
+        """Return some further numbers of a claim as Markdown, such as "12 *cracks*; 3 *pulses*".
 
-        The keys of these numbers are "TEXT: NAME", where TEXT contains the given words.
+        Their keys have the form "TEXT: NAME". Those whose TEXT contains the given words are listed.
         """
         parts = []
         for key, value in self(id).further.items():

@@ -98,9 +98,9 @@ JUDGES_BY_CLAIM: dict[str, Callable[[Evidence, str], Claim]] = {
     "layer_free_top": layer.layer_free_top,
     "T_trans_stress_underestimate": transition.transition_time_underestimated,
     "burridge_knopoff_pulses": friction_laws.burridge_knopoff_pulses,
-    "published_space_time_figure": space_time_figure.left,
-    "published_arrows": space_time_figure.arrows,
-    "published_space_time_figure_right": space_time_figure.right,
+    "published_space_time_figure": space_time_figure.judge_left_panel,
+    "published_arrows": space_time_figure.judge_arrows,
+    "published_space_time_figure_right": space_time_figure.judge_right_panel,
     "pulses_for_many_friction_laws": friction_laws.pulses_for_many_friction_laws,
     "stress_pulse_other_laws": friction_laws.stress_pulse_other_laws,
     "other_laws_change_pulses": friction_laws.other_laws_change_pulses,
@@ -150,24 +150,24 @@ def all_claims(
         raise ValueError(f"claims: {names}; allowed: the same in the texts and in the code")
     # In this simulation pulses enter another pre-stress. Two new columns, which the rules of claims
     # use, show whether each pulse grows or decays.
-    evidence.assign("regimes_beyond", pulses.change_signs)
+    evidence.assign("regimes_beyond", pulses.growth_signs)
     places = places_of(evidence.entries, sentences)
     results = []
     for id, entry in evidence.entries.items():
-        claim = claim_of(evidence, id)
+        claim = judge_claim(evidence, id)
         result = fields_of_claim(id, claim, entry, places[id], explanations)
         if result["verdict"] == NOT_TESTABLE:
             # The reason may be that runs are flagged.
-            sentence_on_flags = evidence.flags_behind(result["source"])
+            sentence_on_flags = evidence.sentence_on_flags(result["source"])
             result["why"] = f"{result['why']} {sentence_on_flags}".rstrip()
         results.append(result)
     return results
 
 
-def claim_of(evidence: Evidence, id: str) -> Claim:
+def judge_claim(evidence: Evidence, id: str) -> Claim:
     """Judge one claim by the rule of its entry or by its function.
 
-    Raises ValueError, with the name of the claim, if its rule cannot be evaluated.
+    Raises ValueError, with the id of the claim, if its rule cannot be evaluated.
     """
     entry = evidence.entries[id]
     if "rule" not in entry:
@@ -189,13 +189,14 @@ def fields_of_claim(
     place : sections and figures of the paper with the claim; empty if there is none
     explanations : see `all_claims`
     """
-    copied = {name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN}
-    fields = DEFAULT_FIELDS | copied
+    written = {name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN}
+    fields = DEFAULT_FIELDS | written
     if entry["kind"] == "approximate":
         # Only estimates have these fields. They are None if the result does not set them.
         fields |= dict.fromkeys(("ninety", "largest", "exact_median", "exact_largest"))
     fields |= {"id": id} | claim.json_fields()
     if fields["beyond"]:
+        # A claim that the paper does not make has verdicts with other names.
         fields["verdict"] = VERDICTS_BEYOND.get(fields["verdict"], fields["verdict"])
     fields["figure_or_section"] = place or "beyond the paper"
     fields["counted"] = not (fields["follows_from"] or fields["beyond"] or fields["remark"])
@@ -208,25 +209,28 @@ def fields_of_claim(
 def final_texts(
     fields: Mapping[str, Any], claim: Claim, entry: Mapping, explanations: Mapping[str, str]
 ) -> dict[str, str]:
-    """Return the note and the reason (why) of a claim, with all expressions evaluated.
+    """Return the note of a claim and the reason for its verdict (why), as final texts.
 
-    fields : all fields of the claim, with the expressions not evaluated
+    fields : all fields of the claim. Its note and reason still contain expressions in braces.
     claim, entry, explanations : see `fields_of_claim`
     """
     # The expressions may use all fields, and some values that are not written to claims.json.
     values = {**fields, **claim.sentence_values()}
-    note, why = sentence(fields["note"], values), sentence(fields["why"], values)
+    note = fill_in_one_line(fields["note"], values)
+    why = fill_in_one_line(fields["why"], values)
     if fields["choices"] and fields["verdict"] in explanations:
-        # The common explanation may quote the reason and the doubt of this claim.
-        values |= {"why": why, "doubt": sentence(entry.get("doubt", ""), values)}
-        why = sentence(explanations[fields["verdict"]], values)
-    texts = {"note": note, "why": why}
-    # A claim without a reason of its own gets one from its numbers.
-    return texts | {"why": with_texts({**fields, **texts}).why_text()}
+        # The explanation of this verdict, which all claims share, takes the place of the reason. It
+        # may quote the reason and the doubt of this claim.
+        doubt = fill_in_one_line(entry.get("doubt", ""), values)
+        explanation = explanations[fields["verdict"]]
+        why = fill_in_one_line(explanation, {**values, "why": why, "doubt": doubt})
+    # If the reason is still empty, the claim gets one from its numbers.
+    formatted_claim = with_texts({**fields, "why": why})
+    return {"note": note, "why": formatted_claim.why_text()}
 
 
-def sentence(text: str, values: Mapping) -> str:
-    """Return a text in one line, with its expressions evaluated; they may use the values."""
+def fill_in_one_line(text: str, values: Mapping) -> str:
+    """Replace each ``{{ expression }}`` over the values in a text, and join the lines to one."""
     return " ".join(fill(text, values).split())
 
 

@@ -32,9 +32,10 @@ UNPERTURBED = ("any_prestress", "steady_displacement", "steady_elsewhere")
 def equation(
     evidence: Evidence, id: str, measured: str, predicted: str, runs: Mapping[str, str]
 ) -> Equation:
-    """Judge a claim that has a rule for an equation between columns.
+    """Judge a claim whose rule says that a measured quantity is equal to a predicted one.
 
-    measured, predicted : a column, and an expression over columns
+    measured : name of the quantity, which is extrapolated to spacing 0
+    predicted : expression over columns
     runs : conditions that select runs, by name of the simulation
     """
     tables = [evidence.finest(name, where=where) for name, where in runs.items()]
@@ -49,7 +50,7 @@ class Always(NamedTuple):
     sweeps : names of the sweeps
     where : condition that selects runs; all runs if it is empty
     holds : condition that must hold; if it is empty, the regime must be one of ``ends``
-    decidable, ends : see `Evidence.agreed`
+    decidable, ends : see `Evidence.holds_in_runs`
     counted : conditions that select runs whose regimes are counted, by words for the table of
         claims
     numbers : expressions for additional numbers, by words for the table of claims
@@ -65,19 +66,22 @@ class Always(NamedTuple):
 
 
 def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
-    """Judge a claim that has a rule of the form `Always`.
+    """Judge a claim whose rule is a condition that must hold in each run of some sweeps.
 
-    keys : fields of the rule
+    The rule may also ask for additional numbers: counts of regimes, and values of expressions.
+
+    keys : fields of the rule, which are explained at `Always`
     """
     rule = Always(**keys)
-    # In the condition, {tolerance} is the tolerance of the claim, and {steady} that of a steady
-    # pulse.
+    # The condition may contain {tolerance}, the tolerance of the claim, and {steady}, the largest
+    # relative change of velocity of a steady pulse.
     holds = rule.holds.format(tolerance=evidence.tolerance(id), steady=evidence.steady)
     if not holds:
+        # Without a condition, the rupture must end in one of these regimes.
         holds = f"regime in {rule.ends}"
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
-        decided += evidence.agreed(sweep, rule.where, holds, rule.decidable, rule.ends)
+        decided += evidence.holds_in_runs(sweep, rule.where, holds, rule.decidable, rule.ends)
     table = evidence.tables[rule.sweeps[0]]
     further = {words: float(value_of(table, number)) for words, number in rule.numbers.items()}
     for words, condition in rule.counted.items():
@@ -86,23 +90,23 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     return Qualitative(decided=decided, further=further)
 
 
-def change_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
-    """Return signs that show if each pulse grows (1), decays (-1) or keeps its size (0).
+def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
+    """Return two columns of signs: 1 if a pulse grows, -1 if it decays, 0 if it does neither.
 
-    The pulse formed at the level 0 and enters the level in the column beyond. By theory a pulse
-    keeps its size if it stays at the level 0. So each pulse is compared with a reference, the pulse
-    that stays at the level 0 in a run with the same level on the left.
+    Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond. It
+    is compared with a reference: the pulse of the run with the same level on the left that stays at
+    the level 0. By theory this pulse keeps its size.
 
     changed : sign of the velocity change; 0 if it is not larger than the change of the reference
     widened : sign of the half-width minus that of the reference
 
     Both are -1 if the pulse has died, and 0 if they are unknown.
     """
-    reference = table[table["beyond"] == 0.0].set_index("left")
+    reference_by_left = table[table["beyond"] == 0.0].set_index("left")
     change = table[VELOCITY_CHANGE]
-    change_of_reference = table["left"].map(reference[VELOCITY_CHANGE])
+    change_of_reference = table["left"].map(reference_by_left[VELOCITY_CHANGE])
     has_changed = change.abs() > change_of_reference.abs()
-    widening = table[HALF_WIDTH] - table["left"].map(reference[HALF_WIDTH])
+    widening = table[HALF_WIDTH] - table["left"].map(reference_by_left[HALF_WIDTH])
     signs = {
         "changed": np.sign(change).where(has_changed, 0.0),
         "widened": np.sign(widening),
@@ -182,7 +186,8 @@ def differences_of_pairs(
 def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether there is only one pulse for each pre-stress, no matter how it began.
 
-    Each pair of pulses in the same pre-stress must have the same velocity, width and slip.
+    Each pair of pulses in the same pre-stress must have the same velocity, width and slip, within
+    the tolerance.
     """
     table = evidence.finest("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)
     sizes = ["pulse_peak_velocity", "pulse_width", "pulse_slip"]
@@ -198,54 +203,64 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether a pulse that enters another pre-stress becomes a steady pulse there.
 
-    Its final slip must be that of a steady pulse in this pre-stress, within the tolerance.
+    Its final slip must be that of a simulated steady pulse in this pre-stress, within the tolerance
+    and on the two finest lattices. Deviations from two predicted slips are shown, too.
     """
-    # Slips of steady pulses: simulated, exact, and by the paper's formula without damping. The keys
-    # are words for the table of claims.
-    slip_columns = {
-        "slip off by at most": "pulse_slip",
-        "slip off the exact slip by at most": "exact_pulse_slip",
-        "slip off that without damping by at most": "paper_pulse_slip",
-    }
-    # The relative deviations from these slips, one table for each lattice.
-    deviations = []
+    deviations_by_lattice = []
     perturbed, unperturbed = evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED)
     for pulses, steady_pulses in zip(perturbed, unperturbed, strict=True):
-        steady_slips = matching_steady_pulses(pulses, steady_pulses)[[*slip_columns.values()]]
-        deviations.append((pulses[["pulse_slip"]].to_numpy() / steady_slips - 1.0).abs())
-    on_finest, on_middle = (
-        table["pulse_slip"] <= evidence.tolerance(id) for table in deviations[:2]
+        matching = matching_steady_pulses(pulses, steady_pulses)
+        # The three slips of a steady pulse: simulated, exact, and by the formula without damping.
+        steady_slips = matching[["pulse_slip", "exact_pulse_slip", "paper_pulse_slip"]]
+        final_slips = pulses[["pulse_slip"]].to_numpy()
+        deviations_by_lattice.append((final_slips / steady_slips - 1.0).abs())
+    finest, middle, _ = deviations_by_lattice
+    tolerance = evidence.tolerance(id)
+    largest = finest.max().fillna(0.0)
+    return Qualitative(
+        decided=agreed_answers(
+            finest["pulse_slip"] <= tolerance, middle["pulse_slip"] <= tolerance
+        ),
+        further={
+            "slip off by at most": float(largest["pulse_slip"]),
+            "slip off the exact slip by at most": float(largest["exact_pulse_slip"]),
+            "slip off that without damping by at most": float(largest["paper_pulse_slip"]),
+        },
     )
-    largest = deviations[0].max().fillna(0.0)
-    further = {words: float(largest[column]) for words, column in slip_columns.items()}
-    return Qualitative(decided=agreed_answers(on_finest, on_middle), further=further)
 
 
 def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) -> pd.DataFrame:
-    """Return for each pulse the steady pulse in the level of pre-stress that the pulse enters.
+    """Return for each pulse the row of a steady pulse in the pre-stress that the pulse enters.
 
-    A row is NaN if there is no such steady pulse.
+    The row is NaN if there is no such steady pulse.
     """
+    # A steady pulse is in uniform pre-stress, whose level is in the column left.
     keys = ["left", "gamma", "damping_ratio"]
     by_level = steady_pulses.drop_duplicates(keys).set_index(keys)
+    # The column beyond has the level that a pulse enters.
     entered = pulses[["beyond", "gamma", "damping_ratio"]]
     return by_level.reindex(pd.MultiIndex.from_frame(entered))
 
 
 def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
-    """Judge whether a pulse leaves no strain if it keeps its shape, and only then."""
-    # Pulses that leave strain must grow or decay. This is the additional requirement.
+    """Judge whether a pulse leaves no strain if it keeps its shape, and only then.
+
+    Pulses in zero pre-stress keep their shape, so the strain that they leave must be 0. The
+    additional requirement is that pulses that leave strain grow or decay.
+    """
+    # In this simulation pulses enter the pre-stress level in the column beyond.
     enters_stress = "beyond != 0"
     strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
-    has_changed = evidence.agreed("regimes_beyond", enters_stress, "changed != 0")
+    has_changed = evidence.holds_in_runs(
+        "regimes_beyond", where=enters_stress, holds="changed != 0"
+    )
 
     def changed_if_strained(tolerance: float) -> Qualitative:
         """Judge whether all pulses that leave a strain above the tolerance grow or decay."""
         return Qualitative(decided=np.array(has_changed, object)[strains > tolerance])
 
-    # Pulses in zero pre-stress keep their shape, so they must leave no strain.
-    unchanging = evidence.finest("stress_pulses", where=WITHOUT_DAMPING)
-    claim = evidence.equation(id, unchanging, "strain_left", "0")
+    in_zero_prestress = evidence.finest("stress_pulses", where=WITHOUT_DAMPING)
+    claim = evidence.equation(id, in_zero_prestress, quantity="strain_left", predicted="0")
     return replace(
         claim,
         counts=changed_if_strained(claim.tolerance).counts(),
@@ -256,7 +271,8 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
 def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether pulses in zero pre-stress differ if they began in different pre-stress.
 
-    The pulses of each pair of runs must have different peak velocities or different half-widths.
+    In each pair of runs, the pulses must have different peak velocities or different half-widths.
+    The difference must be larger than the tolerance.
     """
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
     # The smallest nonzero damping ratio is that of the figures. Without damping the lattice rings.
@@ -271,12 +287,15 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
 
 
 def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
-    """Compare peak velocity and half-width on damped lattices with the exact solution."""
+    """Compare peak velocity and half-width on damped lattices with the exact solution.
+
+    In each run, both must be within the tolerance.
+    """
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
     allowed = evidence.tolerance(id)
     sizes = ["pulse_peak_velocity", HALF_WIDTH]
     exact = table[["exact_largest_velocity", "exact_half_width"]].to_numpy()
-    # These have one row for each run, and one column for each size.
+    # Deviations and uncertainties have one row for each run, and one column for each size.
     deviations = (table[sizes] / exact - 1.0).abs()
     uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy() / exact
     decided = []
@@ -284,10 +303,10 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
         deviations.to_numpy(), uncertainties, strict=True
     ):
         decided.append(all_within(deviations_of_run, uncertainties_of_run, allowed))
-    largest_of_peak, largest_of_half_width = deviations.max()
+    largest = deviations.max()
     words = "on the lattice, with damping, off by at most"
     further = {
-        f"peak {words}": float(largest_of_peak),
-        f"half-width {words}": float(largest_of_half_width),
+        f"peak {words}": float(largest["pulse_peak_velocity"]),
+        f"half-width {words}": float(largest[HALF_WIDTH]),
     }
     return Qualitative(decided=decided, further=further)

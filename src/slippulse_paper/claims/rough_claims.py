@@ -92,7 +92,14 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
 
 
 def rough_numbers(evidence: Evidence) -> dict[str, float]:
-    """Return the numbers of the findings on rough pre-stress; empty without ensembles."""
+    """Return the numbers of the findings on rough pre-stress; empty without ensembles.
+
+    confidence, tail_... : from runs over a long distance
+    rough_..., quiet_..., above_... : columns of the roughest ensemble under a stress boundary, of
+        the smoothest, and of the one with the highest level
+
+    The others are explained in the functions that are called.
+    """
     displacement = ensembles(evidence, "displacement")
     stress = ensembles(evidence, "stress")
     if displacement.empty or stress.empty:
@@ -108,7 +115,6 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
         "tail_low": long_distance["exponent_low"],
         "tail_high": long_distance["exponent_high"],
     }
-    # Ensembles that the texts quote: the roughest, the smoothest, and that with the highest level.
     quoted = {
         "rough": stress.loc[stress["deviation"].idxmax()],
         "quiet": stress.loc[stress["deviation"].idxmin()],
@@ -147,11 +153,14 @@ def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
 def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
     """Return the survival of pulses where most die, and a bound of the death rate where none dies.
 
-    worst_... : the ensemble with the highest death rate, and the fraction of pulses that survive
+    worst_... : of the ensemble with the highest death rate
+    worst_survival, worst_low, worst_high : fraction of pulses that survive to the end, and its
+        confidence interval
     calm_rate : upper bound of the death rate over all ensembles without deaths
     """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
+    # The survival curve of this ensemble has rows in the order of the distance.
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
     is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
     end_of_curve = study[is_curve & is_worst].iloc[-1]
@@ -168,7 +177,9 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
     """
     by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
     fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
+    # The far half begins and stops at larger distances.
     halves = checks[checks["part"] == "length"].sort_values("stop")
+    near_half, far_half = halves.iloc[0], halves.iloc[-1]
     numbers = {
         "grid_pulses": coarse["pulses"],
         "grid_dx": coarse["dx"],
@@ -176,7 +187,7 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
         "grid_fine_dx": fine["dx"],
         "grid_fine_deaths": fine["deaths"],
     }
-    for name, half in (("near", halves.iloc[0]), ("far", halves.iloc[-1])):
+    for name, half in (("near", near_half), ("far", far_half)):
         columns = ("rate", "rate_low", "rate_high", "stop")
         numbers |= {f"{name}_{column}": half[column] for column in columns}
     return numbers
@@ -212,10 +223,13 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
 
 def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return how far before the balance position pulses die on the coarsest and finest lattice."""
-    # The column change has the median of this distance over all pulses.
+    """Return how far before the balance position pulses die on the coarsest and finest lattice.
+
+    Also return the spacings dx of these lattices. Distances are medians over all pulses.
+    """
     by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
     finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
+    # In these rows the column change has the distance.
     return {
         "balance_coarse": coarsest["change"],
         "balance_fine": finest["change"],

@@ -59,7 +59,7 @@ def verdict_on_number(deviation: float, uncertainty: float, tolerance: float) ->
 
     The true deviation lies between ``deviation`` minus ``uncertainty`` and ``deviation`` plus
     ``uncertainty``. The claim fails if this whole interval is above the tolerance, and holds if it
-    is below. If the tolerance lies inside the interval, the claim holds with a caveat, or is
+    is below it. If the tolerance lies inside the interval, the claim holds with a caveat, or is
     inconclusive if the uncertainty alone is larger than the tolerance.
     """
     if not np.isfinite([deviation, uncertainty]).all():
@@ -84,8 +84,9 @@ def worst_tested(verdicts: Iterable[str]) -> str:
 def verdict_over_choices(verdicts: Sequence[str]) -> str:
     """Return one verdict on a claim from its verdicts at all combinations of open choices.
 
-    It depends on a choice if the claim holds at one combination and fails at another.
+    This is "depends on an open choice" if the claim holds at one combination and fails at another.
+    Otherwise it is the worst verdict.
     """
-    answers = {HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts}
-    holds_and_fails = True in answers and False in answers
-    return DEPENDS if holds_and_fails else worst_tested(verdicts)
+    # True, False, or None if a verdict leaves open whether the claim holds.
+    holds = [HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts]
+    return DEPENDS if True in holds and False in holds else worst_tested(verdicts)

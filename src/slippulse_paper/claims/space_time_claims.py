@@ -18,8 +18,11 @@ from .kinds import Reading
 ARROW_READINGS = ("arrow_time", "arrow_length")
 
 
-def left(evidence: Evidence, id: str) -> Reading:
-    """Judge the left panel by the best fit to all readings of it, except its two arrows."""
+def judge_left_panel(evidence: Evidence, id: str) -> Reading:
+    """Judge the left panel by the best fit to all readings of it, except its two arrows.
+
+    The sentences of the claim quote the entries of the best fit.
+    """
     best = infer_parameters(evidence.tables["published_figure"])["best"]
     return Reading(
         tolerance=evidence.tolerance(id),
@@ -31,12 +34,12 @@ def left(evidence: Evidence, id: str) -> Reading:
 
 
 def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
-    """Return the numbers for sentences about the errors of the trailing edge.
+    """Return numbers for sentences about the readings of the trailing edge.
 
-    The readings of the trailing edge share a part of their errors.
+    Their errors have two parts: one that all of them share, and one that is independent in each.
 
-    own_edge_error : the other part, which is independent in each of these readings
-    independent_chi_square : chi-square if all errors were independent
+    own_edge_error : the independent part
+    independent_chi_square : chi-square of all readings except arrows if no error was shared
 
     pulls : pull of each reading at the best fit
     """
@@ -51,7 +54,7 @@ def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> 
     return {"own_edge_error": own_edge_error, "independent_chi_square": chi_square}
 
 
-def arrows(evidence: Evidence, id: str) -> Reading:
+def judge_arrows(evidence: Evidence, id: str) -> Reading:
     """Judge the two arrows of the left panel by the chi-square that they add to the best fit."""
     study = evidence.tables["published_figure"]
     with_arrows = infer_parameters(study, part="arrows")["best"]
@@ -79,9 +82,13 @@ def arrows(evidence: Evidence, id: str) -> Reading:
 
 
 def excess_lengths(evidence: Evidence, fit: Mapping[str, Any]) -> dict[str, float]:
-    """Return how much longer the drawn arrows are than those of a fit, by name of the reading."""
+    """Return how much longer the drawn arrows are than those of a fit, by name of the reading.
+
+    fit : a fit of `infer_parameters`, with the pull of each reading
+    """
     lengths = {}
     for name in ARROW_READINGS:
+        # A pull is in units of the reading error.
         fitted_minus_drawn = fit["pulls"][name] * evidence.readings[name]["reading_error"]
         lengths[name] = -fitted_minus_drawn
     return lengths
@@ -92,8 +99,12 @@ def readings_by_name(evidence: Evidence) -> dict[str, Any]:
     return {name: entry["value"] for name, entry in evidence.readings.items()}
 
 
-def right(evidence: Evidence, id: str) -> Reading:
-    """Judge the largest velocity of the right panel by the run that deviates most from it."""
+def judge_right_panel(evidence: Evidence, id: str) -> Reading:
+    """Judge the largest velocity of the right panel by the run that deviates most from it.
+
+    This velocity is the only reading of the right panel that is fitted. The panel has a stress
+    boundary.
+    """
     pulls = evidence.tables["published_figure"].query("part == 'stress'")["pull"]
     return Reading(
         tolerance=evidence.tolerance(id),

@@ -22,8 +22,15 @@ import pandas as pd
 from slippulse.measurement.front_paths import fit_line
 
 from . import rules
-from .choices import LAST_RELEASE_FRACTION, Chosen, Combination, OverChoices, named, over_choices
-from .evidence import Evidence, agreed_answers, exponent, ratios, with_grid_uncertainty
+from .choices import (
+    LAST_RELEASE_FRACTION,
+    Chosen,
+    Combination,
+    OverChoices,
+    over_choices,
+    text_of_value,
+)
+from .evidence import Evidence, agreed_answers, fit_exponent, ratios, with_grid_uncertainty
 from .kinds import NAN, Approximate, Claim, Equation, Qualitative
 from .rules import Spread
 from .space_time_claims import readings_by_name
@@ -83,7 +90,10 @@ def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
 
 
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Return the runs of figure 5, and the undamped runs of figures 10 and 11."""
+    """Return the runs of figure 5, and the undamped runs of figures 10 and 11.
+
+    Sweeps without such runs are left out.
+    """
     conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
@@ -100,8 +110,10 @@ def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return exact solutions at each combination of choices.
 
-    The combination with which we drew figure 5 comes first, because its numbers are shown.
+    The combination with which we drew figure 5 comes first, because claims show the numbers of the
+    first one.
     """
+    # The choices that vary, and their values in figure 5.
     open_choices = ["release", "damping_ratio"]
     choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
@@ -113,12 +125,9 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     other_runs: list[Runs] = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
-        runs = Runs(choice | {"solution": "exact"}, [rows])
-        is_of_figure = all(choice[name] == value for name, value in choices_of_figure.items())
-        if is_of_figure:
-            runs_of_figure.append(runs)
-        else:
-            other_runs.append(runs)
+        is_of_figure = choices_of_figure.items() <= choice.items()
+        group = runs_of_figure if is_of_figure else other_runs
+        group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
 
 
@@ -148,22 +157,23 @@ def arrests(evidence: Evidence) -> list[Runs]:
     is at the last release.
     """
     arrest_runs = []
-    # An exact solution has one table.
-    for choice, (table,) in exact_runs(evidence, "stress"):
-        widest = widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK])
-        arrest_runs.append(Runs(choice, [widest]))
+    for choice, exact_tables in exact_runs(evidence, "stress"):
+        widest = [
+            widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK]) for table in exact_tables
+        ]
+        arrest_runs.append(Runs(choice, widest))
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
-        widest_on_lattices = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
-        arrest_runs.append(Runs(choice | at_last_release, widest_on_lattices))
+        widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
+        arrest_runs.append(Runs(choice | at_last_release, widest))
     return arrest_runs
 
 
 def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> pd.DataFrame:
-    """Return the run with the widest nucleation at each level, with the paper's estimates.
+    """Return the run with the widest nucleation at each level, with the paper's estimates added.
 
-    The estimates are those of the time at which the left front has covered its distance, and of the
-    distance between the fronts at this time. The paper assumes that both fronts run at speed 1.
+    These are estimates of the time that the left front needs for the distance that it has covered,
+    and of the distance between the fronts at this time. The paper assumes that both run at speed 1.
 
     new_names : new names of the columns, by their names in the table
     """
@@ -172,8 +182,8 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
     widest = table.sort_values("width").drop_duplicates("left", keep="last")
     widest = widest.rename(columns=new_names)
     if "covered" not in widest:
-        # An exact solution is measured at a fraction of the whole distance. At speed 1 the whole
-        # distance is equal to the estimated time.
+        # An exact solution is measured when the front has covered a fraction of its whole distance.
+        # This distance is equal to the estimated time, which assumes the speed 1.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
     # At speed 1 the left front needs a time equal to its distance. Since the right front has run
     # equally far, the distance between the fronts is twice as long.
@@ -181,8 +191,8 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
     return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 
 
-def median_ratios(combinations: Sequence[Combination]) -> dict[float | str, float]:
-    """Return the median of measured/estimated for each covered fraction.
+def median_ratio_by_fraction(combinations: Sequence[Combination]) -> dict[float | str, float]:
+    """Return the median of measured/estimated for each fraction of the path.
 
     It is NaN if no run has a number. All other choices are those of the first combination.
     """
@@ -197,11 +207,11 @@ def median_ratios(combinations: Sequence[Combination]) -> dict[float | str, floa
     return by_fraction
 
 
-def fraction_medians(combinations: Sequence[Combination]) -> dict[str, float]:
-    """Return the median ratio for each covered fraction, with words for the table of claims."""
+def described_median_ratios(combinations: Sequence[Combination]) -> dict[str, float]:
+    """Return `median_ratio_by_fraction` with words for the table of claims as keys, sorted."""
     by_words = {}
-    for fraction, median in median_ratios(combinations).items():
-        by_words[f"median ratio: at {named(fraction)}"] = median
+    for fraction, median in median_ratio_by_fraction(combinations).items():
+        by_words[f"median ratio: at {text_of_value(fraction)}"] = median
     return dict(sorted(by_words.items()))
 
 
@@ -236,14 +246,18 @@ def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) ->
         return evidence.approximate(id, tables, quantity, f"estimated_{quantity}")
 
     runs = transitions(evidence) if boundary == "displacement" else arrests(evidence)
-    from_exact = evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}")
     return JudgedEstimate(
-        judge_each(runs, judge), from_exact, arrow_of_figure_4(evidence, boundary, quantity)
+        combinations=judge_each(runs, judge),
+        from_exact=evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}"),
+        arrow=arrow_of_figure_4(evidence, boundary, quantity),
     )
 
 
 def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[str, float]:
-    """Return the length of an arrow in figure 4 divided by the estimate; empty if there is none."""
+    """Return the length of an arrow in figure 4 divided by the estimate; empty if there is none.
+
+    The figure has a panel for each boundary. Arrows show the time or length of the transition.
+    """
     name = f"arrow_{quantity}_stress" if boundary == "stress" else f"arrow_{quantity}"
     reading = evidence.readings.get(name)
     if reading is None:
@@ -259,8 +273,8 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge an estimate of the transition under a displacement boundary, by both criteria.
 
-    These are the first stick, and the time at which the slip reaches the printed value. Not all
-    runs reach this value.
+    The transition is at the first stick, or when the slip reaches the printed value. Not all runs
+    reach this value, so the claim also shows how many do.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
     runs = evidence.finest("scaling_displacement")
@@ -273,7 +287,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
         "in all": float(len(ratio)),
         "of these within the tolerance": float(is_within_tolerance.sum()),
     }
-    template_values = readings_by_name(evidence) | undamped_and_damped(combinations)
+    # Values for the sentences of the claim.
+    template_values = readings_by_name(evidence) | deviations_at_first_stick(combinations)
     template_values |= {
         "of_runs": len(ratio),
         "reach": ratio.count(),
@@ -288,8 +303,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     )
 
 
-def undamped_and_damped(combinations: Iterable[Combination]) -> dict[str, list[float]]:
-    """Return the deviations at the first stick, in three groups.
+def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, list[float]]:
+    """Return the deviations of the combinations with the criterion first stick, in three groups.
 
     undamped : all combinations without damping
     elastic, total : combinations with damping, by release rule
@@ -305,9 +320,13 @@ def undamped_and_damped(combinations: Iterable[Combination]) -> dict[str, list[f
 
 
 def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """Judge an estimate under a stress boundary, at each fraction and at the last release."""
+    """Judge an estimate of the arrest, under a stress boundary.
+
+    It is judged for each fraction of the path at which the front may count as arrested, and at the
+    last release. The claim also shows the median ratio for each of these.
+    """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "stress", quantity)
-    further = arrow | fraction_medians(combinations)
+    further = arrow | described_median_ratios(combinations)
     return over_choices(combinations, from_exact=from_exact, further=further)
 
 
@@ -317,15 +336,22 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     T and L of the runs are fitted as powers of their estimates, and the exponents should be 1. The
     exponent that is farther from 1 decides.
     """
-    has_springs = boundary == "displacement"
-    varied_columns = ("left", "gamma") if has_springs else ("left",)
+    if boundary == "displacement":
+        runs, varied_columns = transitions(evidence), ["left", "gamma"]
+    else:
+        # Without leaf springs gamma has no influence.
+        runs, varied_columns = arrests(evidence), ["left"]
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
         """Fit both exponents to the runs of one combination, and judge the one farther from 1."""
         exponents = {}
         for quantity, symbol in SYMBOLS.items():
-            estimate = f"estimated_{quantity}"
-            exponents[symbol] = exponent(tables, quantity, estimate, varied_columns)
+            exponents[symbol] = fit_exponent(
+                tables,
+                measured=quantity,
+                predicted=f"estimated_{quantity}",
+                varied_columns=varied_columns,
+            )
         farthest = max(exponents, key=lambda symbol: abs(exponents[symbol].value - 1.0))
         measured, uncertainty = exponents[farthest]
         return Equation(
@@ -337,7 +363,6 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
             template_values={"symbol": farthest},
         )
 
-    runs = transitions(evidence) if has_springs else arrests(evidence)
     return over_choices(judge_each(runs, judge))
 
 
@@ -350,7 +375,8 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         """Judge both fronts in the runs of one combination, and return the worse result."""
         left = evidence.approximate(id, tables, measured="covered / time", predicted="1")
-        # The length is the distance between the fronts, so the right front has run the difference.
+        # The length is the distance between the fronts, and the left front has covered a part of
+        # it. The right front has covered the rest.
         right_speed = "(length - covered) / time"
         right = evidence.approximate(id, tables, measured=right_speed, predicted="1")
         if right.median.value > left.median.value:
@@ -358,35 +384,22 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
         return replace(left, template_values={"side": "left"})
 
     combinations = judge_each(arrests(evidence), judge)
-    return over_choices(combinations, further=fraction_medians(combinations))
+    return over_choices(combinations, further=described_median_ratios(combinations))
 
 
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """Judge whether the left front takes longer to its arrest than it would take at speed 1.
 
-    The paper estimates the time by this speed, and says that it underestimates the time.
+    The paper estimates the time by this speed, and says that it underestimates the time. Today the
+    claim has no tolerance (0). Its earlier tolerance was a limit on how much longer it may take.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge each run of one combination."""
-        # At speed 1 the time equals the distance. Only the two finest lattices are compared.
-        excesses = [table["time"] / table["covered"] - 1.0 for table in tables[:2]]
-
-        def takes_longer(limit: float) -> Qualitative:
-            """Judge whether each run takes longer, but at most by this fraction of the time."""
-            holds = [(excess > 0.0) & (excess <= limit) for excess in excesses]
-            # An exact solution is one table, which agrees with itself.
-            return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
-
-        def extra_verdict(tolerance: float) -> str:
-            """Return the verdict if a tolerance limits how much longer the front may take.
-
-            This is used for the earlier tolerance of the claim. The tolerance 0 sets no limit.
-            """
-            limit = tolerance if tolerance > 0.0 else np.inf
-            return takes_longer(limit).verdict()
-
-        return replace(takes_longer(np.inf), extra_verdict=extra_verdict)
+        """Judge the runs of one combination; a tolerance above 0 limits the additional time."""
+        return replace(
+            takes_longer(tables),
+            extra_verdict=lambda tolerance: takes_longer(tables, limit=tolerance).verdict(),
+        )
 
     runs = arrests(evidence)
     smallest_ratios = []
@@ -398,24 +411,42 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     return over_choices(judge_each(runs, judge), further=further)
 
 
+def takes_longer(tables: list[pd.DataFrame], limit: float = 0.0) -> Qualitative:
+    """Judge in each run whether the left front takes longer to its arrest than at speed 1.
+
+    limit : largest allowed additional time, as a fraction of the time at speed 1; no limit if it
+        is 0
+    """
+    holds = []
+    for table in tables[:2]:
+        # At speed 1 the time equals the distance.
+        excess = table["time"] / table["covered"] - 1.0
+        is_allowed = (excess <= limit) | (limit == 0.0)
+        holds.append((excess > 0.0) & is_allowed)
+    # The two finest lattices must agree. An exact solution is one table, which agrees with itself.
+    return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
+
+
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     """Judge the distance of the last release on the left, which should be |x_minus|.
 
-    The claim is judged for each damping ratio, and shows the numbers of all runs.
+    The claim is judged for each damping ratio separately. The numbers that are shown are those of
+    all runs together.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
     finest = tables[0]
     runs = []
-    for damping_ratio in sorted({*evidence.tables["open_choices"]["damping_ratio"]}):
+    for damping_ratio in sorted(evidence.tables["open_choices"]["damping_ratio"].unique()):
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
         if has_ratio.any():
             runs.append(lattice_runs([table[has_ratio] for table in tables]))
     judge = partial(judge_arrest_distance, evidence, id)
-    shown = judge(tables)
+    over_all_runs = judge(tables)
     ratio = ratios(finest, "last_release_distance", "balance_distance")
     extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
-    return over_choices(judge_each(runs, judge), shown, further={**shown.further, **extremes})
+    further = {**over_all_runs.further, **extremes}
+    return over_choices(judge_each(runs, judge), shown=over_all_runs, further=further)
 
 
 def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame]) -> Approximate:
@@ -430,27 +461,32 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
     gap, gap_uncertainty = with_grid_uncertainty(tables, median_gaps)
     gap_verdict = rules.verdict_on_number(gap, gap_uncertainty, MAX_ARREST_GAP)
 
-    power, power_uncertainty = exponent(tables, measured, predicted, ("left", "width"))
+    exponent, exponent_uncertainty = fit_exponent(
+        tables, measured=measured, predicted=predicted, varied_columns=("left", "width")
+    )
     allowed = float(evidence.entries[id]["tolerance_exponent"])
-    power_verdict = rules.verdict_on_number(abs(power - 1.0), power_uncertainty, allowed)
+    exponent_verdict = rules.verdict_on_number(abs(exponent - 1.0), exponent_uncertainty, allowed)
 
-    verdict_on_both = rules.worst([gap_verdict, power_verdict])
+    verdict_on_both = rules.worst([gap_verdict, exponent_verdict])
     return replace(
         evidence.approximate(id, tables, measured, predicted),
         # The argument is the tolerance of the claim, which does not limit the gap or the exponent.
         extra_verdict=lambda _tolerance: verdict_on_both,
         further={
             "median gap in H between the last release and x_minus, over all sweeps": gap,
-            "exponent": power,
+            "exponent": exponent,
         },
         template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
     )
 
 
 def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether T_trans and L_trans diverge as gamma approaches 0, at each level."""
+    """Judge whether T_trans and L_trans diverge as gamma approaches 0, at each level.
+
+    The two finest lattices must agree.
+    """
     finest, middle, _ = evidence.lattices("scaling_displacement")
-    on_finest, on_middle = divergences(finest), divergences(middle)
+    on_finest, on_middle = divergence_by_level(finest), divergence_by_level(middle)
     answers = agreed_answers(
         [level.diverges for level in on_finest], [level.diverges for level in on_middle]
     )
@@ -474,8 +510,8 @@ class Divergence(NamedTuple):
     length_exponent: float
 
 
-def divergences(table: pd.DataFrame) -> list[Divergence]:
-    """Return the divergence at each level of pre-stress, from the runs of all gammas."""
+def divergence_by_level(table: pd.DataFrame) -> list[Divergence]:
+    """Return the divergence at each level of pre-stress, from the runs at all values of gamma."""
     return [divergence(runs) for _, runs in table.sort_values("gamma").groupby("left")]
 
 
@@ -492,13 +528,15 @@ def divergence(runs: pd.DataFrame) -> Divergence:
     changes = runs[quantities].diff()[1:]
     always_fall = (changes < 0.0).all(axis=None)
     logs = np.log(runs[["gamma", *quantities]].head(3))
-    time_line, length_line = (fit_line(logs["gamma"], logs[name]) for name in quantities)
+    # The slopes of these lines are the exponents of gamma.
+    time_line = fit_line(logs["gamma"], logs["transition_time"])
+    length_line = fit_line(logs["gamma"], logs["transition_length"])
     is_negative = [line.slope + 3.0 * line.slope_error < 0.0 for line in (time_line, length_line)]
     diverges = bool(always_fall and all(is_negative)) if len(runs) >= 3 else None
-    return Divergence(diverges, time_line.slope, length_line.slope)
+    return Divergence(diverges, time_exponent=time_line.slope, length_exponent=length_line.slope)
 
 
-def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
+def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative:
     """Judge whether a quantity rises with the pre-stress at each gamma.
 
     Each pair of neighbouring levels counts as one run. It is undecided if the change is smaller
@@ -518,12 +556,15 @@ def rises(table: pd.DataFrame, quantity: str) -> Qualitative:
 
 
 def shorter_transition_low_prestress(evidence: Evidence, id: str) -> OverChoices:
-    """Judge whether the transition length grows with the pre-stress."""
-    return over_choices(
-        judge_each(transitions(evidence), lambda tables: rises(tables[0], "length"))
-    )
+    """Judge whether the transition length grows with the pre-stress, on the finest lattice."""
+
+    def judge(tables: list[pd.DataFrame]) -> Qualitative:
+        """Judge the runs of one combination."""
+        return judge_rise_with_prestress(tables[0], "length")
+
+    return over_choices(judge_each(transitions(evidence), judge))
 
 
 def pulses_widen_with_prestress(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether the pulse width grows with the pre-stress."""
-    return rises(evidence.finest("any_prestress"), "pulse_width")
+    return judge_rise_with_prestress(evidence.finest("any_prestress"), "pulse_width")

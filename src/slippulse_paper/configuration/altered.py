@@ -18,13 +18,14 @@ MAX_NAMED_DIFFERENCES = 4
 class Alterations:
     """Differences between a configuration and the shipped one, for each resolved simulation.
 
-    ``simulations`` has the list of changes of each simulation, by name. `changes` explains its
-    entries.
+    ``changes_of`` has the list of changes of each simulation, by name. Its entries are those of
+    `provenance.changes`: each has a dotted key and the value here.
     """
 
     def __init__(self, shipped: Configuration, altered: Configuration) -> None:
+        """Find the changes of each simulation, except those that have no influence of their own."""
         self.shipped, self.altered = shipped, altered
-        self.simulations = {}
+        self.changes_of = {}
         self._altered_simulations = all_simulations(altered)
         shipped_simulations = all_simulations(shipped)
         for name, simulation in self._altered_simulations.items():
@@ -39,22 +40,24 @@ class Alterations:
                 # A simulation with beta does not use the damping ratio.
                 omitted_keys.add("damping_ratio")
             all_changes = changes(before, after)
-            self.simulations[name] = [
+            self.changes_of[name] = [
                 change for change in all_changes if change["key"] not in omitted_keys
             ]
 
     def note(self, simulations: Iterable[str], keys: Iterable[str]) -> str:
         """Return one line that names altered parameters, such as 'altered: b = 0.05'.
 
-        These are the parameters of ``simulations``, and the values of the configuration whose
-        dotted key begins with one of ``keys``. The text is empty if nothing differs.
+        The line is empty if nothing is altered.
+
+        simulations : names of simulations whose parameters count
+        keys : beginnings of dotted keys of the configuration whose values count
         """
         relevant_changes: list[Mapping[str, Any]] = []
         for name in simulations:
-            relevant_changes += self.simulations.get(name, [])
-        first_parts = tuple(keys)
+            relevant_changes += self.changes_of.get(name, [])
+        beginnings = tuple(keys)
         for change in changes(self.shipped.given(), self.altered.given()):
-            if change["key"].startswith(first_parts):
+            if change["key"].startswith(beginnings):
                 relevant_changes.append(change)
         # Several simulations may have the same change, which is named once.
         equations = [*dict.fromkeys(map(_equation, relevant_changes))]
@@ -85,6 +88,7 @@ class Alterations:
 
 def _equation(change: Mapping[str, Any]) -> str:
     """Return a change as an equation, such as 'b = 0.05'."""
+    # The last part of the dotted key.
     name = change["key"].rpartition(".")[2]
     return f"{SYMBOLS.get(name, name)} = {_value_text(change['here'])}"
 

@@ -15,10 +15,13 @@ def runs_of(chunk: int, chunk_count: int, run_count: int) -> Iterator[int]:
 
     Chunks are numbered from 1, and runs from 0.
     """
-    for dealing_round, first_run in enumerate(range(0, run_count, chunk_count)):
+    first_runs_of_rounds = range(0, run_count, chunk_count)
+    for dealing_round, first_run in enumerate(first_runs_of_rounds):
         # Every version of Python gives the same random numbers for the same seed.
         first_chunk = 1 + int(chunk_count * random.Random(dealing_round).random())
         # The chunks get the runs of this round in turn, and chunk 1 follows the last chunk.
-        run = first_run + (chunk - first_chunk) % chunk_count
+        turn_of_chunk = (chunk - first_chunk) % chunk_count
+        run = first_run + turn_of_chunk
+        # The last round may be incomplete.
         if run < run_count:
             yield run

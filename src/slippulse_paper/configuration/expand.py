@@ -55,10 +55,10 @@ def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
     accuracy = simulation["accuracy"]
     step = simulation.get("max_step", _default_time_step(simulation, run, friction))
     if "promise" in accuracy:
-        # A required accuracy also limits the step that a simulation sets itself.
+        # If the user requires an accuracy, it also limits the step that a simulation sets itself.
         step = min(step, accuracy["max_step"])
     if "fixed" in simulation["spacing"]:
-        # A grid study uses larger steps, since it cannot use larger spacings.
+        # With a fixed spacing, the coarser runs of a grid study differ in the step instead.
         return step * simulation["coarser"]
     return step
 

@@ -14,8 +14,8 @@ from slippulse.theory.front_speeds import front_speed
 
 from .altered import Alterations
 from .expand import expand
-from .promised_spacings import promised
-from .resolve import accuracy_of, all_simulations, corners, resolve
+from .promised_spacings import with_promised_spacings
+from .resolve import accuracy_of, all_simulations, resolve, with_ends_of_lists
 from .runs import run_count
 from .schema import Configuration, Model, Simulation
 
@@ -38,7 +38,7 @@ def simulation_problems(config: Configuration) -> list[str]:
             problem = "a number too large or small to compute with; allowed: numbers near 1"
             problems.append(f"{config.key_of(name)}: {problem}")
         except ValueError as error:
-            problems.append(f"{config.key_of(name)}.{error}{_units(config, name)}")
+            problems.append(f"{config.key_of(name)}.{error}{_note_on_units(config, name)}")
     return problems
 
 
@@ -48,22 +48,22 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     count = run_count(sweep)
     allowed = f"up to the number of runs, {count}"
     check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
-    # Refusals show at the ends of the lists, and so only these runs are checked.
-    scenes, _ = expand(promised(corners(sweep)))
+    # If any run is refused, one at the ends of the lists is, too. Only these are checked.
+    scenes, _ = expand(with_promised_spacings(with_ends_of_lists(sweep)))
     _check_profiles(scenes)
     _check_resolution(scenes)
     coarsest = max(accuracy["coarser"])
     try:
-        expand(promised(corners(sweep | {"coarser": coarsest})))
+        expand(with_promised_spacings(with_ends_of_lists(sweep | {"coarser": coarsest})))
     except ValueError as error:
         lattice = f"on the lattice {coarsest:g} times coarser of the grid study"
         raise ValueError(f"{error} ({lattice})") from None
 
 
-def _units(config: Configuration, name: str) -> str:
-    """Return a text with the units of a scene that has a layer, and no text for other simulations.
+def _note_on_units(config: Configuration, name: str) -> str:
+    """Return a note on the units in the refusal of a scene that is given in SI units.
 
-    The message of a refusal has non-dimensional numbers, but such a scene is given in SI units.
+    The refusal has non-dimensional numbers. The note is empty for all other simulations.
     """
     scene = config.scenes.get(name)
     if scene is None or scene.layer is None:
@@ -73,6 +73,7 @@ def _units(config: Configuration, name: str) -> str:
 
 def _check_profiles(scenes: Sequence[Scene]) -> None:
     """Raise ValueError for a pre-stress with which nothing ever moves."""
+    # Many scenes share a profile. A dictionary keeps each profile and spacing once.
     different_profiles = dict.fromkeys((scene.prestress, scene.dx) for scene in scenes)
     for profile, dx in different_profiles:
         largest = _largest_prestress(profile, dx)
@@ -91,24 +92,26 @@ def _largest_prestress(profile: Prestress, dx: float) -> float:
     if has_only_levels:
         levels = [interval.right_value for interval in profile.intervals]
         return max(profile.peak, *levels)
-    # The largest pre-stress is at a block near x = 0, a bump or a point of the table. Near a
-    # Gaussian means within three widths.
-    centres, widths = np.array([(0.0, 0.0), *profile.gaussians]).T
-    distances = np.outer(np.linspace(-3.0, 3.0, 601), widths)
-    near_gaussians = np.add.outer(centres, distances)
+    # The largest pre-stress is at a block near x = 0, or within three widths of the centre of a
+    # Gaussian, or next to a point of the table.
+    positions = [np.zeros(1)]
+    for centre, width in profile.gaussians:
+        positions.append(centre + width * np.linspace(-3.0, 3.0, 601))
     table_positions = np.array([x for x, _ in profile.points])
-    near_points = np.add.outer([-dx, 0.0, dx], table_positions)
-    positions = np.concatenate([near_gaussians.ravel(), near_points.ravel()])
-    block_positions = np.round(positions / dx) * dx
+    positions += [table_positions - dx, table_positions, table_positions + dx]
+    block_positions = np.round(np.concatenate(positions) / dx) * dx
     return float(np.max(profile(block_positions)))
 
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
     """Raise ValueError if the pulse has far too few blocks in every scene."""
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
-    # Scenes with wide pulses are tried first, so that one scene is usually enough.
-    ordered = sorted(scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left))
-    if not any(_pulse_blocks(scene) >= fewest_blocks for scene in ordered):
+    # Computing the width takes time. Scenes with wide pulses come first, so that one is usually
+    # enough.
+    widest_first = sorted(
+        scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left)
+    )
+    if not any(_pulse_blocks(scene) >= fewest_blocks for scene in widest_first):
         widest = max(map(_pulse_blocks, scenes))
         raise ValueError(
             f"resolved_blocks: {scenes[0].resolved_blocks}, while the widest pulse has about"
@@ -118,9 +121,10 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
 
 
 def _pulse_blocks(scene: Scene) -> float:
-    """Return the number of blocks across the pulse, or infinity if theory does not give its width.
+    """Return the number of blocks across the pulse of a scene.
 
-    If the stress is held, return the number of blocks across the narrowest Gaussian instead.
+    If the stress is held, return the number of blocks across the narrowest Gaussian instead. The
+    result is infinity if there are no blocks, or if theory does not give a pulse width.
     """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
@@ -128,6 +132,7 @@ def _pulse_blocks(scene: Scene) -> float:
     if scene.scheme == "continuum" or level <= 0.0 or used_extra_terms(vars(scene)):
         return math.inf
     try:
+        # The pulse in uniform pre-stress at the higher of the two levels.
         speed = float(front_speed(level, scene.damping_ratio, scene.release))
         return pulse_at_speed(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):
@@ -139,7 +144,7 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
 
     Every run of the chunk counts as much as the most expensive run at the ends of the lists.
     """
-    scenes, samples = expand(promised(corners(simulation)))
+    scenes, samples = expand(with_promised_spacings(with_ends_of_lists(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
     runs = run_count(simulation) / chunks
     return Bound(
@@ -151,14 +156,17 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
 
 
 def cost_problems(config: Configuration, altered: Alterations) -> list[str]:
-    """Return a line for each altered simulation whose runs would take too much time or memory."""
+    """Return a line for each altered simulation whose runs would take too much time or memory.
+
+    Simulations with their shipped values are not checked.
+    """
     shipped = altered.shipped
-    is_lattice_altered = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
+    are_lattices_altered = (config.accuracy, config.presets) != (shipped.accuracy, shipped.presets)
     shipped_simulations, accuracy = all_simulations(shipped), accuracy_of(config)
     problems = []
     for name, simulation in all_simulations(config).items():
-        is_altered = altered.simulations[name] or shipped_simulations.get(name) != simulation
-        if not (is_lattice_altered or is_altered):
+        is_altered = altered.changes_of[name] or shipped_simulations.get(name) != simulation
+        if not (are_lattices_altered or is_altered):
             continue
         sweep = resolve(simulation, config.model, accuracy)
         exceeded_limit = bound_of_sweep(sweep, simulation.chunks).exceeded(simulation.chunks)

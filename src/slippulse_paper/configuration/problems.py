@@ -8,7 +8,7 @@ class ConfigError(ValueError):
     """Refusal of a configuration: a line for each problem, with key, value and what is allowed."""
 
 
-def nearest(name: object, known: Iterable[str]) -> str:
-    """Return a hint such as " (did you mean 'gamma'?)", or no text if no known name is similar."""
+def spelling_hint(name: object, known: Iterable[str]) -> str:
+    """Return a hint such as " (did you mean 'gamma'?)"; empty if no known name is similar."""
     similar = difflib.get_close_matches(str(name)[:80], list(known), n=1)
     return f" (did you mean {similar[0]!r}?)" if similar else ""

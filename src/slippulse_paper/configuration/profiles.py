@@ -7,7 +7,7 @@ combination of the parameters. Each expanded profile is converted to a `Prestres
 
 import json
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import product
 from pathlib import Path
@@ -34,20 +34,45 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
     The path of a file may be relative to ``folder``. Raises ConfigError with the profile, the file
     and the row if a file cannot be used.
     """
+    changed = dict(overlay)
+    scenes, simulations = overlay.get("scenes"), overlay.get("simulations")
+    # An overlay has not been checked yet, and so any value may have any type.
+    if isinstance(scenes, Mapping):
+        changed["scenes"] = {
+            name: _with_points(scene, f"scenes.{name}", folder) for name, scene in scenes.items()
+        }
+    if isinstance(simulations, Mapping):
+        changed["simulations"] = {
+            name: _with_points_in_profiles(simulation, f"simulations.{name}", folder)
+            for name, simulation in simulations.items()
+        }
+    return changed
 
-    def add_points(profile: Any, key: str) -> Any:
-        """Return a profile, whose dotted key is ``key``, with the points of its file."""
-        names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
-        # A profile has both if this function has been called before.
-        if not names_file or "points" in profile:
-            return profile
-        try:
-            columns = _columns_of_file(folder / profile["file"], in_si="layer" in profile)
-        except ValueError as error:
-            raise ConfigError(f"{key}.file: {error}") from None
-        return {**profile, "points": [list(row) for row in zip(*columns, strict=True)]}
 
-    return _with_changed_profiles(overlay, add_points)
+def _with_points_in_profiles(simulation: Any, key: str, folder: Path) -> Any:
+    """Return a simulation, whose dotted key is ``key``, with the points in its list of profiles."""
+    if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
+        return simulation
+    profiles = [
+        _with_points(profile, f"{key}.profiles.{number}", folder)
+        for number, profile in enumerate(simulation["profiles"])
+    ]
+    return {**simulation, "profiles": profiles}
+
+
+def _with_points(profile: Any, key: str, folder: Path) -> Any:
+    """Return a scene or profile, whose dotted key is ``key``, with the points of its file.
+
+    It is returned as it is if it names no file, or if it already has the points.
+    """
+    names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
+    if not names_file or "points" in profile:
+        return profile
+    try:
+        columns = _columns_of_file(folder / profile["file"], in_si="layer" in profile)
+    except ValueError as error:
+        raise ConfigError(f"{key}.file: {error}") from None
+    return {**profile, "points": [list(row) for row in zip(*columns, strict=True)]}
 
 
 def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]:
@@ -57,39 +82,6 @@ def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]
         return x.tolist(), stress.tolist()
     table = read_dimensionless(path, None, None)
     return table.x, table.prestress
-
-
-def _with_changed_profiles(
-    overlay: Mapping[str, Any], change: Callable[[Any, str], Any]
-) -> dict[str, Any]:
-    """Return an overlay in which each scene and each profile of a simulation is changed.
-
-    ``change`` gets a scene or a profile, and its dotted key.
-    """
-    changed = dict(overlay)
-    scenes, simulations = overlay.get("scenes"), overlay.get("simulations")
-    # An overlay has not been checked yet, and so any value may have any type.
-    if isinstance(scenes, Mapping):
-        changed["scenes"] = {
-            name: change(scene, f"scenes.{name}") for name, scene in scenes.items()
-        }
-    if isinstance(simulations, Mapping):
-        changed["simulations"] = {
-            name: _with_changed_list(simulation, f"simulations.{name}", change)
-            for name, simulation in simulations.items()
-        }
-    return changed
-
-
-def _with_changed_list(simulation: Any, key: str, change: Callable[[Any, str], Any]) -> Any:
-    """Return a simulation in which each entry of its list of profiles is changed."""
-    if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
-        return simulation
-    profiles = [
-        change(profile, f"{key}.profiles.{number}")
-        for number, profile in enumerate(simulation["profiles"])
-    ]
-    return {**simulation, "profiles": profiles}
 
 
 def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -126,13 +118,14 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
         return sum(math.prod(map(len, _lists_of(profile))) for profile in self._profiles)
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
+        """Yield the profile of each run, with one value in place of each list."""
         for profile in self._profiles:
             for values in product(*_lists_of(profile)):
                 run_profile = dict(profile)
                 # There are no values without a rough background.
                 if values:
-                    values_by_name = zip(ROUGH_LISTS, values, strict=True)
-                    run_profile["rough"] = {**profile["rough"], **dict(values_by_name)}
+                    values_by_name = dict(zip(ROUGH_LISTS, values, strict=True))
+                    run_profile["rough"] = {**profile["rough"], **values_by_name}
                 yield run_profile
 
     def __contains__(self, profile: object) -> bool:
@@ -170,15 +163,14 @@ def labels_of(profiles: Iterable[Mapping[str, Any]]) -> list[dict[str, float]]:
     Neighbouring rough profiles that differ only in the seed have the same number.
     """
     labels: list[dict[str, float]] = []
-    number, previous_shape = 0, None
+    number, previous_without_seed = 0, None
     for profile in profiles:
         background = dict(profile.get("rough", {}))
         seed = background.pop("seed", math.nan)
-        # The profile without its seed.
-        shape = {**profile, "rough": background}
-        if "rough" not in profile or shape != previous_shape:
+        without_seed = {**profile, "rough": background}
+        if "rough" not in profile or without_seed != previous_without_seed:
             number += 1
-        previous_shape = shape
+        previous_without_seed = without_seed
         labels.append({"profile": number, "seed": float(seed)})
     return labels
 

@@ -11,11 +11,12 @@ from slippulse.simulation.accuracy import settings_for
 from .runs import entries
 
 
-def promised(simulation: Mapping) -> Mapping[str, Any]:
-    """Return a resolved simulation, with a list ``spacings`` if the user requires an accuracy.
+def with_promised_spacings(simulation: Mapping) -> Mapping[str, Any]:
+    """Add a list ``spacings`` to a resolved simulation if the user requires an accuracy.
 
-    The list has the block spacing with which each run reaches the accuracy. Raises ValueError if no
-    accuracy can be promised for the scheme or the friction of the simulation.
+    The list has the block spacing with which each run reaches the accuracy. Without a required
+    accuracy, the simulation is returned as it is. Raises ValueError if no accuracy can be promised
+    for the scheme or the friction of the simulation.
     """
     promise = simulation["accuracy"].get("promise")
     if promise is None:

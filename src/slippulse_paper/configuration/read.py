@@ -23,7 +23,7 @@ from slippulse.model.checks import short_repr
 
 from ..text.markdown import is_readable
 from .limits import simulation_problems
-from .problems import ConfigError, nearest
+from .problems import ConfigError, spelling_hint
 from .profiles import with_points_of_files
 from .refusals import dotted, format_problems, problem_line
 from .renamed_keys import with_new_names
@@ -46,8 +46,9 @@ def read_config(
 ) -> Configuration:
     """Merge the shipped values, the overlays and the values of ``--config``, and check the result.
 
-    The runs of all simulations are checked only if ``every_run`` is set, since this check takes
-    time. Raises ConfigError with one line for each problem.
+    Later overlays take precedence over earlier ones, and the command line over all of them. The
+    runs of all simulations are checked only if ``every_run`` is set, since this check takes time.
+    Raises ConfigError with one line for each problem.
     """
     merged = dict(shipped)
     for overlay in (*overlays, _parse_texts(command_line_values or {})):
@@ -93,8 +94,9 @@ def _validated(merged: Mapping) -> Configuration:
 def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
     """Return a line for each statement in ``published`` that cannot be shown on a page.
 
-    Only the statements of the user are checked, which are those that the shipped file does not
-    have.
+    Only statements that differ from the shipped ones are checked.
+
+    given, shipped : the block ``published`` of the configuration, and the shipped one
     """
     problems = []
     for name, reading in given.items():
@@ -107,10 +109,12 @@ def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
 
 
 def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[str, Any]:
-    """Merge an overlay into a mapping.
+    """Return a mapping into which an overlay was merged.
 
-    Mappings are merged, and other values are replaced. The value null removes a key, but is refused
-    for a misspelt key.
+    Mappings are merged, and other values are replaced. The value null removes a key. It is refused
+    for a key that does not exist but is similar to one, since this is a spelling mistake.
+
+    path : keys that lead to the mapping, for messages
     """
     merged = dict(base)
     for key, value in overlay.items():
@@ -120,8 +124,8 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
             merged[key] = _merge(inner_base, value, (*path, key))
         elif value is not None:
             merged[key] = value
-        elif key not in merged and nearest(key, merged):
-            problem = f"{dotted((*path, key))}: null{nearest(key, merged)}"
+        elif key not in merged and spelling_hint(key, merged):
+            problem = f"{dotted((*path, key))}: null{spelling_hint(key, merged)}"
             raise ConfigError(f"{problem}; allowed: null for a key that exists")
         else:
             merged.pop(key, None)
@@ -131,7 +135,8 @@ def _merge(base: Mapping, overlay: Mapping, path: tuple[str, ...] = ()) -> dict[
 def _parse_texts(value: Any, path: tuple[str, ...] = ()) -> Any:
     """Return values of the command line, with each text read as YAML.
 
-    Snakemake leaves some numbers as texts. ``path`` has the keys that lead to ``value``.
+    Snakemake leaves some numbers as texts, such as "0.3". ``path`` has the keys that lead to
+    ``value``.
     """
     if isinstance(value, Mapping):
         return {key: _parse_texts(entry, (*path, key)) for key, entry in value.items()}
@@ -143,13 +148,12 @@ def _parse_texts(value: Any, path: tuple[str, ...] = ()) -> Any:
         # The name of a preset, such as 01, stays text.
         return value
     try:
-        scalar = _load(value)
+        parsed = _load(value)
     except (YAMLError, ConfigError):
         problem = f"{dotted(path)}: {short_repr(value)}"
         raise ConfigError(f"{problem}; allowed: a plain value") from None
     # A text that looks like a list or a mapping stays text.
-    is_scalar = not isinstance(scalar, Mapping | list)
-    return scalar if is_scalar else value
+    return value if isinstance(parsed, Mapping | list) else parsed
 
 
 def read_overlay(path: str | Path) -> dict[str, Any]:
@@ -198,7 +202,10 @@ def _reason(error: Exception) -> str:
 
 
 def _reason_of_parser(error: MarkedYAMLError) -> str:
-    """Return the reason why the parser of YAML refuses a file, with the number of the line."""
+    """Return the reason why the parser of YAML refuses a file, with the number of the line.
+
+    A mark of the error is a position in the file.
+    """
     problem = " ".join((error.problem or str(error)).split())
     mark = error.problem_mark
     if error.context_mark and re.search("flow|quoted|simple key", error.context or ""):
@@ -215,10 +222,12 @@ class _PlainComposer(Composer):
     """A composer of YAML that refuses everything except plain data while it parses."""
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """Compose the next node, which is a key, a value or an entry of ``parent``.
+        """Compose the next node of ``parent``, or raise ConfigError if it is not plain data.
 
-        ``index`` is None for a key, the key for a value, and a number for an entry of a list.
+        The library calls this method for each node. The node is a key (``index`` is None), a value
+        (``index`` is its key) or an entry of a list (``index`` is its number).
         """
+        # The next event of the parser describes the node.
         event = self.parser.peek_event()
         is_key = isinstance(parent, MappingNode) and index is None
         line, refusal = event.start_mark.line, ""
@@ -229,7 +238,7 @@ class _PlainComposer(Composer):
         elif is_key and not isinstance(event, ScalarEvent):
             refusal = "a collection as a key; allowed: text"
         elif _is_missing(event) and parent is not None:
-            refusal = _missing_value(parent, index)
+            refusal = _refusal_of_missing_value(parent, index)
             if isinstance(index, ScalarNode):
                 # The parser reports a missing value at the line of the next key.
                 line = index.start_mark.line
@@ -243,25 +252,28 @@ def _is_missing(event: Event) -> bool:
     return isinstance(event, ScalarEvent) and event.implicit[0] and not event.value
 
 
-def _missing_value(parent: Any, key: Any) -> str:
-    """Return the refusal of an entry without a value. ``key`` is a number if it is in a list."""
+def _refusal_of_missing_value(parent: Any, key: Any) -> str:
+    """Return the refusal of a missing value. Its ``key`` is a node, or a number in a list."""
     if not isinstance(key, ScalarNode):
         return f"no value; {VALUE_ALLOWED}"
-    return _decimal_comma(parent, key) or f"{key.value}: no value; {VALUE_ALLOWED}"
+    refusal_of_comma = _refusal_of_decimal_comma(parent, key)
+    return refusal_of_comma or f"{key.value}: no value; {VALUE_ALLOWED}"
 
 
-def _decimal_comma(mapping: MappingNode, key: ScalarNode) -> str:
-    """Return the refusal of a number with a decimal comma, or no text if there is none.
+def _refusal_of_decimal_comma(mapping: MappingNode, key: ScalarNode) -> str:
+    """Return the refusal of a number with a decimal comma; empty if ``key`` is not part of one.
 
     In a mapping in braces, such as {gamma: 0,3}, the parser takes the 3 for a key without a value.
+    So this key follows an entry whose value is an integer.
     """
-    previous_entry = mapping.value[-1] if mapping.value else (None, None)
-    previous_key, previous_value = (getattr(node, "value", None) for node in previous_entry)
-    if mapping.flow_style and _is_integer(previous_value) and re.match(r"\d", key.value, re.ASCII):
-        given = f"{previous_key}: {previous_value},{key.value}"
-        suggestion = f"{previous_value}.{key.value}"
-        return f"{given}; allowed: numbers with a point (write {suggestion})"
-    return ""
+    if not mapping.flow_style or not mapping.value or not re.match(r"\d", key.value, re.ASCII):
+        return ""
+    previous_key, previous_value = mapping.value[-1]
+    if not _is_integer(previous_value.value):
+        return ""
+    given = f"{previous_key.value}: {previous_value.value},{key.value}"
+    suggestion = f"{previous_value.value}.{key.value}"
+    return f"{given}; allowed: numbers with a point (write {suggestion})"
 
 
 def _is_integer(value: Any) -> bool:

@@ -14,7 +14,7 @@ from pydantic import BaseModel
 
 from slippulse.model.checks import short_repr
 
-from .problems import nearest
+from .problems import spelling_hint
 from .schema import LABEL_WORDS, NAME_WORDS, Configuration, Measure, Model, NamedScene, Simulation
 
 # Users correct a few mistakes at a time.
@@ -40,7 +40,7 @@ def dotted(path: Path) -> str:
 
 
 def _key_text(part: str | int) -> str:
-    """Return a key as it is, or in quotes if it has special characters, and shorten a long one."""
+    """Return a key as it is, or shortened and in quotes if it is long or has special characters."""
     is_plain = re.fullmatch(r"\w{1,80}", str(part), re.ASCII)
     return str(part) if is_plain else short_repr(part)
 
@@ -48,31 +48,40 @@ def _key_text(part: str | int) -> str:
 def problem_line(problem: Mapping, config: Mapping) -> str:
     """Return the line of the refusal for one error of pydantic.
 
-    ``config`` is the configuration that is refused.
+    ``problem`` is the error, and ``config`` the configuration that is refused.
     """
     kind, path = problem["type"], problem["loc"]
-    entry = _last_known_entry(path, config)
-    # If a value may have several forms, pydantic adds the form to the path. Such a value is refused
-    # without regard to its keys.
-    mapping_path = path if kind == "value_error" else path[:-1]
-    has_one_form = len(entry.path) >= len(mapping_path)
-    kind_in_mapping = kind if has_one_form else None
-    if kind_in_mapping == "value_error":
-        reason = str(problem["ctx"]["error"])
-        return f"{dotted(path)}.{reason}" if path else reason
-    if kind_in_mapping == "missing" and isinstance(path[-1], str):
-        return _missing_line(path, config)
-    if path[-1] == PYDANTIC_KEY_MARK:
+    if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
-    if kind_in_mapping == "extra_forbidden":
-        return _unknown_key_line(path, config)
-    allowed = "a finite number" if kind == "finite_number" else words(entry.schema)
+    # If a value may have several forms, the path leads beyond the known entries, to one of the
+    # forms. Such a value is refused as a whole, without regard to its keys.
+    entry = _last_known_entry(path, config)
+    mapping_path = path if kind == "value_error" else path[:-1]
+    if len(mapping_path) <= len(entry.path):
+        line = _mapping_line(problem, config)
+        if line is not None:
+            return line
+    allowed = "a finite number" if kind == "finite_number" else words_for(entry.schema)
     given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
     return f"{given}; allowed: {allowed}{_remedy(entry.value)}"
 
 
+def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
+    """Return the refusal of a mapping that is not valid as a whole, or has a wrong or missing key.
+
+    Returns None if the error is of another kind. The parameters are those of `problem_line`.
+    """
+    kind, path = problem["type"], problem["loc"]
+    if kind == "value_error":
+        reason = str(problem["ctx"]["error"])
+        return f"{dotted(path)}.{reason}" if path else reason
+    if kind == "missing" and isinstance(path[-1], str):
+        return _missing_line(path, config)
+    return _unknown_key_line(path, config) if kind == "extra_forbidden" else None
+
+
 def _name_line(path: Path) -> str:
-    """Return the refusal of a name, such as the name of a scene."""
+    """Return the refusal of a name that has characters which are not allowed."""
     # The last part of the path is PYDANTIC_KEY_MARK.
     *parents, name, _ = path
     allowed = LABEL_WORDS if path[0] in ("presets", "published") else NAME_WORDS
@@ -82,7 +91,7 @@ def _name_line(path: Path) -> str:
 def _unknown_key_line(path: Path, config: Mapping) -> str:
     """Return the refusal of an unknown key, with a hint at the key that was probably meant."""
     known_keys = [*_last_known_entry(path, config).schema["properties"]]
-    hint = nearest(path[-1], known_keys) or _other_blocks(path[-1])
+    hint = spelling_hint(path[-1], known_keys) or _other_blocks(path[-1])
     return f"{dotted(path)}: unknown key{hint}; allowed: {', '.join(known_keys)}"
 
 
@@ -112,7 +121,7 @@ def _missing_line(path: Path, config: Mapping) -> str:
     if len(path) > 2 and isinstance(path[-2], str):
         # The name of this entry may be a misspelt name of a shipped entry, which has all keys.
         siblings = _last_known_entry(path[:-2], config).value
-        line += nearest(path[-2], {*siblings} - {path[-2]})
+        line += spelling_hint(path[-2], {*siblings} - {path[-2]})
         if path[0] == "simulations" and path[-2].startswith("fig"):
             line += "; docs/figures.md lists the simulations of each figure"
     return line
@@ -127,21 +136,25 @@ class _Entry(NamedTuple):
 
 
 def _last_known_entry(path: Path, config: Any) -> _Entry:
-    """Return the last entry on a path that exists in the configuration and has a single schema.
+    """Return the last entry on a path of pydantic that has a value and a single schema.
 
-    Pydantic's path goes further if a value has several allowed forms, or if a key is missing.
+    The path goes further if a value has several allowed forms, or if a key is missing.
     """
-    schema, value = resolved(json_schema()), config
+    schema, value = dereferenced(json_schema()), config
     for depth, part in enumerate(path):
-        inner = _schema_of_row(schema) if isinstance(part, int) else _schema_of_key(schema, part)
+        # A part of the path is the key of a mapping or the number of an entry of a list.
+        if isinstance(part, int):
+            inner_schema = _schema_of_list_entry(schema)
+        else:
+            inner_schema = _schema_of_key(schema, part)
         exists = isinstance(value, list) or (isinstance(value, Mapping) and part in value)
-        if not isinstance(inner, dict) or not exists:
+        if not isinstance(inner_schema, dict) or not exists:
             return _Entry(path[:depth], schema, value)
-        schema, value = resolved(inner), value[part]
+        schema, value = dereferenced(inner_schema), value[part]
     return _Entry(path, schema, value)
 
 
-def _schema_of_row(schema: Mapping) -> Any:
+def _schema_of_list_entry(schema: Mapping) -> Any:
     """Return the schema for the entries of a list, or None if there is none.
 
     It is also None if the entries are rows of numbers. A wrong row is refused with the whole list,
@@ -149,7 +162,7 @@ def _schema_of_row(schema: Mapping) -> Any:
     """
     items = schema.get("items")
     # In JSON Schema, only a row of a fixed length has this key.
-    has_rows = items is not None and "prefixItems" in resolved(items)
+    has_rows = items is not None and "prefixItems" in dereferenced(items)
     return None if has_rows else items
 
 
@@ -166,10 +179,11 @@ def _schema_of_key(schema: Mapping, key: str) -> Any:
     return patterns[0] if patterns else schema.get("additionalProperties")
 
 
-def resolved(schema: dict[str, Any]) -> dict[str, Any]:
+def dereferenced(schema: dict[str, Any]) -> dict[str, Any]:
     """Return the schema that a reference leads to, or the only alternative to null.
 
-    Other schemas are returned as they are. The text ``allowed`` of the given schema is kept.
+    Other schemas are returned as they are. The entry ``allowed`` of the given schema, which
+    describes the allowed values in words, is kept.
     """
     alternatives = _not_null(schema)
     if "$ref" in schema:
@@ -180,18 +194,18 @@ def resolved(schema: dict[str, Any]) -> dict[str, Any]:
         target = alternatives[0]
     else:
         return schema
-    result = resolved(target)
+    result = dereferenced(target)
     return {**result, "allowed": schema["allowed"]} if "allowed" in schema else result
 
 
-def words(schema: dict[str, Any]) -> str:
+def words_for(schema: dict[str, Any]) -> str:
     """Return in words which values a schema allows."""
-    schema = resolved(schema)
+    schema = dereferenced(schema)
     json_type = schema.get("type")
     if "allowed" in schema:
         return schema["allowed"]
     if "anyOf" in schema:
-        return ", or ".join(map(words, _not_null(schema)))
+        return ", or ".join(map(words_for, _not_null(schema)))
     if "const" in schema:
         return str(schema["const"])
     if "enum" in schema:
@@ -208,7 +222,7 @@ def words(schema: dict[str, Any]) -> str:
 def _list_words(schema: Mapping) -> str:
     """Return in words which lists a schema allows, such as "a list of numbers > 0"."""
     # The plural of the words for one entry, such as "numbers > 0" for "a number > 0".
-    items = re.sub(r"^a (whole number|number|mapping)", r"\1s", words(schema["items"]))
+    items = re.sub(r"^a (whole number|number|mapping)", r"\1s", words_for(schema["items"]))
     different = "different " if schema.get("uniqueItems") else ""
     at_least = ", at least one" if schema.get("minItems") else ""
     return f"a list of {different}{items}{at_least}"
@@ -221,7 +235,7 @@ def _not_null(schema: Mapping) -> list[dict[str, Any]]:
 
 def _range(schema: Mapping) -> str:
     """Return the limits of a number in words, such as "> 0 and <= 1"."""
-    limits = {}
+    limits: dict[str, str] = {}
     for key in LIMIT_SIGNS:
         if key in schema:
             # Exponents are written without plus signs and leading zeros.

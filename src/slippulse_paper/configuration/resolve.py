@@ -44,8 +44,8 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
     """Return a simulation as a dictionary with everything that its results depend on.
 
-    The number of chunks is left out, since results do not depend on it. ``accuracy`` has the
-    numerical parameters from `accuracy_of`.
+    Its own keys take precedence over the defaults of the model. The number of chunks is left out,
+    since results do not depend on it. ``accuracy`` has the numerical parameters from `accuracy_of`.
     """
     defaults = Model.model_validate(model).plain()
     # The model has one value of these keys, and a simulation a list.
@@ -62,6 +62,7 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "promise" in numerical and has_own_spacing:
         # NaN means that no accuracy is promised.
         numerical["promise"] = math.nan
+    # In a grid study, coarser is the factor of the spacing of a coarser lattice.
     return {**defaults, **given, "accuracy": numerical, "coarser": 1.0}
 
 
@@ -89,6 +90,7 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
+    # Turn the single values of the scene into the profiles and lists of a simulation.
     profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
     extent = _extent(scene, model, profile)
     given |= {key: [given[key]] for key in LISTED if key in given}
@@ -106,7 +108,12 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
 
 
 def _largest_front_speeds(scene: NamedScene, model: Model, levels: np.ndarray) -> np.ndarray:
-    """Return an upper bound on the front speed at each of some values of the pre-stress."""
+    """Return an upper bound on the front speed in a scene, at each value of the pre-stress.
+
+    If the scene sets beta, the bound holds as long as beta/dx is at most 1.
+
+    levels : values of the pre-stress
+    """
     # The speed is infinite at 1.
     levels = np.minimum(levels, 1.0 - 1e-6)
     # At a pre-stress of 0 or less, a front is not faster than waves, whose speed is 1.
@@ -152,17 +159,17 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
     return farthest_bump + reach + 3.0 * width
 
 
-def corners(simulation: Mapping) -> dict[str, Any]:
-    """Return a resolved simulation with only the smallest and largest value of each list.
+def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
+    """Return a resolved simulation with only the smallest and largest value of each ORDERED list.
 
-    Refusals show at these values. Of an ensemble of rough profiles, the first and the last seed are
-    kept. The job checks the scenes of all seeds before it simulates.
+    If any run is refused or expensive, one at these values is, too. Of an ensemble of rough
+    profiles, the first and the last seed are kept. The job checks all seeds before it simulates.
     """
     ends = {key: value for key, value in simulation.items() if key != "chunk"}
     if "profiles" in ends:
         ends["profiles"] = ends_of_ensembles(ends["profiles"])
     if "beyond" in ends:
-        ends["beyond"] = corners(ends["beyond"])
+        ends["beyond"] = with_ends_of_lists(ends["beyond"])
     for key in ORDERED:
         if isinstance(ends.get(key), list):
             ends[key] = sorted({min(ends[key]), max(ends[key])})

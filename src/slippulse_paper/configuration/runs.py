@@ -80,14 +80,14 @@ def _prestress(values: Mapping[str, Any]) -> Prestress:
 
 
 def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
-    """Return the number and the seed of the profile of each run, by name.
+    """Return for each run the number of its profile (profile) and its seed.
 
     The list is empty if no profile of the simulation has a table of pre-stress.
     """
     profiles = simulation.get("profiles", [])
     if not any(TABLES.intersection(profile) for profile in profiles):
         return []
-    # With labels in place of the profiles, each combination has the label of its profile.
+    # Put labels in place of the profiles. Each combination then has the label of its profile.
     axes = _axes(simulation) | {"profile": labels_of(ExpandedProfiles(profiles))}
     return [values["profile"] for values in _combinations(simulation, axes)]
 
@@ -114,6 +114,7 @@ def run_count(simulation: Mapping) -> int:
 
 def _axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
+    # A list that is not given has one entry: its default, or None if something else sets the value.
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
     return {
@@ -137,11 +138,12 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation that give its pre-stress, by name."""
     if "profiles" in simulation:
         return {"profile": ExpandedProfiles(simulation["profiles"])}
-    right, replacement = simulation["right"], simulation.get("beyond")
+    right, second_level = simulation["right"], simulation.get("beyond")
+    # Each entry has the steps of one run. By default there are none.
     steps: list[tuple] = [()]
-    if replacement is not None:
-        # The pre-stress of each run has one step to one of the new levels.
-        steps = [((replacement["position"], level),) for level in replacement["levels"]]
+    if second_level is not None:
+        # The pre-stress of each run has one step, to one of the levels.
+        steps = [((second_level["position"], level),) for level in second_level["levels"]]
     return {
         "left": simulation["left"],
         "right": [SAME] if right == SAME else right,
@@ -153,8 +155,9 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
 def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
     """Return the block spacing of a run, whose number from 0 is ``index``.
 
-    The spacing is fixed by the key ``spacing``, or chosen to reach a required accuracy
-    (``spacings``), or an entry of the list ``dx``, or it follows from a rule in ``spacing``.
+    The key ``spacing`` may fix it. Otherwise it is the spacing for a required accuracy
+    (``spacings``) or an entry of the list ``dx``, or a rule in ``spacing`` gives it. On the coarser
+    lattices of a grid study it is larger by the factor ``coarser``.
     """
     rule = simulation["spacing"]
     if "fixed" in rule:
@@ -170,14 +173,14 @@ def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
 
 
 def _scaled_spacing(dx: float, rule: Mapping, entry: Entry) -> float:
-    """Return the block spacing that a rule derives from ``dx``, the spacing of the preset.
+    """Return the block spacing dx * scale * W^width_power * gamma^gamma_power.
 
-    The rule has a scale and two powers. The spacing is
-    dx * scale * W^width_power * gamma^gamma_power.
+    ``dx`` is the spacing of the preset, and the rule has the scale and the powers. Raises
+    ValueError if the spacing depends on the width W of the Gaussian, but the profile has none.
     """
-    width = entry.prestress.width
-    has_width = width is not None or rule["width_power"] == 0.0
+    width, width_power = entry.prestress.width, rule["width_power"]
+    is_allowed = width is not None or width_power == 0.0
     allowed = "0 for a profile without a width"
-    check_that(has_width, "spacing.width_power", rule["width_power"], allowed)
-    powers = (width or 1.0) ** rule["width_power"] * entry.gamma ** rule["gamma_power"]
-    return dx * rule["scale"] * powers
+    check_that(is_allowed, "spacing.width_power", width_power, allowed)
+    width_factor = 1.0 if width is None else width**width_power
+    return dx * rule["scale"] * (width_factor * entry.gamma ** rule["gamma_power"])

@@ -23,7 +23,7 @@ from slippulse.model.scene import EXTRA_TERMS
 from slippulse.model.si_quantities import PROFILE_QUANTITIES
 
 from ..text.markdown import harmless
-from .problems import nearest
+from .problems import spelling_hint
 from .profiles import rough_lists
 
 T = TypeVar("T")
@@ -51,9 +51,11 @@ class Block(BaseModel):
 
 
 def key(description: str, default: Any = ..., words: str | None = None, **limits: Any) -> Any:
-    """Return the definition of a key for pydantic.
+    """Return the definition of a key for pydantic. A key without a default is required.
 
-    ``words`` describe the allowed values in refusals. Without them, the type and the limits do.
+    words : the allowed values in words, for refusals; the type and the limits describe them if it
+        is None
+    limits : limits of a number or a text, and other arguments of pydantic's `Field`
     """
     if words:
         limits["json_schema_extra"] = {"allowed": words}
@@ -63,7 +65,8 @@ def key(description: str, default: Any = ..., words: str | None = None, **limits
 def require(condition: bool, given: str, allowed: str) -> None:
     """Raise ValueError unless a condition holds.
 
-    ``given`` names the key and its value, and ``allowed`` states the allowed values.
+    given : key and value, for the message
+    allowed : the allowed values in words
     """
     if not condition:
         raise ValueError(f"{given}; allowed: {allowed}")
@@ -71,7 +74,7 @@ def require(condition: bool, given: str, allowed: str) -> None:
 
 def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
     """Raise ValueError if a name is not among ``names``, with a hint at the most similar one."""
-    require(name in names, f"{key}: {short_repr(name)}{nearest(name, names)}", allowed)
+    require(name in names, f"{key}: {short_repr(name)}{spelling_hint(name, names)}", allowed)
 
 
 def _all_different(values: list[T]) -> list[T]:
@@ -105,6 +108,7 @@ LAW = f"a mapping with law ({', '.join(LAW_NAMES)}) and its parameters"
 
 def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
     """Return the mapping of a friction law unchanged, or raise ValueError if it is not allowed."""
+    # This makes the law and raises the error.
     friction_from(mapping)
     return mapping
 
@@ -190,13 +194,14 @@ class Rough(Block):
     )
 
     def check(self) -> None:
-        """Raise ValueError if there is no rough background with one of the levels.
+        """Raise ValueError if one of the levels is not possible in a rough background.
 
         Only the first value of each other list is checked.
         """
         lists = rough_lists(self.plain())
         first_values = {name: values[0] for name, values in lists.items()}
         for level in lists["level"]:
+            # This draws the background and raises the error.
             rough(**(self.plain() | first_values | {"level": level}))
 
 
@@ -248,16 +253,17 @@ class Profile(Block):
         The width of a profile with points becomes None if it is not given. The pre-stress then has
         no Gaussian.
         """
-        tables = self._given_keys("file", "points", "rough")
+        tables = self._keys_with_value("file", "points", "rough")
         if tables == ["file", "points"]:
             # The key points then contains the points that were read from the file.
             tables = ["file"]
-        levels = self._given_keys("left", "right")
+        levels = self._keys_with_value("left", "right")
         if not tables:
             missing = [name for name in ("left", "right") if name not in levels]
             allowed = "levels on both sides, or points, file or rough"
             require(not missing, f"{', '.join(missing)}: missing", allowed)
             return self
+        # A profile with a table may have no other table, no levels and no steps.
         given = [*tables, *levels]
         if self.steps:
             given.append("steps")
@@ -266,20 +272,22 @@ class Profile(Block):
             # An assignment would mark the width as given.
             self.__dict__["width"] = None
         if self.file is not None:
+            # The points were read from the file if the file is named in an overlay.
             require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
         # The numbers of a scene with a layer are checked after their conversion from SI units.
         if getattr(self, "layer", None) is None:
             self.check_table()
         return self
 
-    def _given_keys(self, *names: str) -> list[str]:
-        """Return the names, among ``names``, of keys that have a value."""
+    def _keys_with_value(self, *names: str) -> list[str]:
+        """Return those of the names whose key has a value."""
         return [name for name in names if getattr(self, name) is not None]
 
     def check_table(self) -> None:
         """Raise ValueError if the points or the rough background are not allowed."""
         if self.points is not None:
             try:
+                # This makes the pre-stress and raises the error.
                 Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
             except ValueError as error:
                 raise ValueError(str(error).removeprefix("prestress.")) from None
@@ -506,11 +514,12 @@ class LayerKeys(Block):
     @model_validator(mode="after")
     def _check_layer(self) -> Self:
         """Raise ValueError if the library does not accept the properties of the layer."""
+        # Any boundary condition will do.
         self.layer("displacement")
         return self
 
     def layer(self, boundary: str) -> Layer:
-        """Return the layer of the library. Without a key ``top``, it follows from ``boundary``."""
+        """Return the layer of the library. If ``top`` is not set, it follows from ``boundary``."""
         given = {"top": TOP_OF_BOUNDARY[boundary]} | self.plain()
         return Layer(**given)
 
@@ -536,7 +545,10 @@ class NamedScene(Profile, PhysicsOfScene):
     @model_validator(mode="before")
     @classmethod
     def _boundary_of_layer(cls, given: Any) -> Any:
-        """Set the boundary condition from the layer if it is not given."""
+        """Set the boundary condition from the top of the layer if it is not given.
+
+        ``given`` has not been checked yet, and is returned unchanged if it is not valid.
+        """
         layer = given.get("layer") if isinstance(given, dict) else None
         if not isinstance(layer, dict) or "boundary" in given:
             return given
@@ -555,7 +567,10 @@ class NamedScene(Profile, PhysicsOfScene):
 
     @model_validator(mode="after")
     def _check_in_model_units(self) -> Self:
-        """Raise ValueError if the scene is not allowed, in non-dimensional units too."""
+        """Raise ValueError if the scene is not allowed.
+
+        A scene with a layer is converted from SI units first.
+        """
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
             require(not too_large, f"dx: {self.dx}", "a number > 0 and <= 1")
@@ -599,12 +614,12 @@ class NamedScene(Profile, PhysicsOfScene):
                 given[name] = layer.convert_from_si(value, quantity)
         allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
         require((given.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
-        given |= self._background_in_model_units(layer)
+        given |= self._tables_and_steps_in_model_units(layer)
         quantities = PROFILE_QUANTITIES["bumps"]
         given["bumps"] = [tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps]
         return self.model_copy(update=given)
 
-    def _background_in_model_units(self, layer: Layer) -> dict[str, Any]:
+    def _tables_and_steps_in_model_units(self, layer: Layer) -> dict[str, Any]:
         """Return the steps, points and rough background of a scene in non-dimensional units."""
         given: dict[str, Any] = {
             "steps": [
@@ -781,7 +796,7 @@ class Claim(Block):
 class Reading(Block):
     simulation: str = key("simulation whose run is compared with the reading")
     quantity: str = key("measured number: a column of the tables in results/measurements")
-    statement: Statement = key("description of what was read off (figure)", min_length=1)
+    statement: Statement = key("description of the reading (figure)", min_length=1)
     value: float = key("the number that was read off (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
     shared_error: NonNegative = key(
@@ -826,7 +841,7 @@ class Configuration(Block):
 
     @model_validator(mode="after")
     def _check_names(self) -> Self:
-        """Raise ValueError if a name is unknown or used twice, or if a scheme has no accuracy."""
+        """Raise ValueError if a name is unknown or used twice, or if an accuracy is impossible."""
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme
@@ -848,7 +863,10 @@ class Configuration(Block):
         require(not is_taken, problem, "neither index nor SCENE_numbers with another scene SCENE")
 
     def _check_reading(self, key: str, reading: Reading) -> None:
-        """Raise ValueError if the number that a reading is compared with is not measured."""
+        """Raise ValueError if the number that a reading is compared with is not measured.
+
+        ``key`` is the dotted key of the reading.
+        """
         # The kind of data that each measured column needs.
         record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:

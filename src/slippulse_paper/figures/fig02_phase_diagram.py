@@ -66,7 +66,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of the study regime_plane, and runs of the sweeps with two more roles.
 
     symmetric : all runs with equal levels on both sides
-    run : some runs at the largest gamma, evenly spread over both levels
+    run : some runs at the largest gamma, with evenly spread levels on each side
     """
     parts = [tables["regime_plane"]]
     columns = ["boundary", "left", "right", "gamma", "regime", "exact_regime", "run_flags"]
@@ -81,7 +81,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the final regimes, and on the right the velocity profiles of numbered regimes.
+    """Draw the final regimes, and on the right the velocity profiles of some of them, with numbers.
 
     Panel a shows runs with equal pre-stress on both sides, as a function of tau_0 and gamma: above
     for the displacement boundary, and below for the stress boundary, where gamma is 0. Panels b and
@@ -130,6 +130,7 @@ def legend_entries(table: pd.DataFrame) -> list[Line2D]:
     """Return one legend entry for each kind of mark that stands for a run (see `draw_runs`)."""
     label = "simulation, in the colour of its regime"
     handles = [entry(label, marker="o", markerfacecolor=GREY, **MARK)]
+    # At the end of such a run, the regime that theory predicts has not yet been reached.
     label = "not settled by its end"
     handles.append(entry(label, marker="o", markerfacecolor="white", **MARK))
     if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
@@ -142,17 +143,19 @@ def draw_regimes_of_equal_levels(axes: Axes, areas: pd.DataFrame) -> None:
 
     They are the regimes of the two quadrants of the plane in which both levels have the same sign.
 
-    areas : corners of the areas of the plane, in the columns left and right
+    areas : corners of the areas of the plane, in the columns left and right; an area has a number
+        in the column series
     """
-    # The centre of such a quadrant has the same level, -0.5 or 0.5, on both sides.
-    centres = areas.groupby(["series", "regime"])[["left", "right"]].mean()
-    for level in (-0.5, 0.5):
-        has_this_centre = centres.eq(level).all(axis="columns")
-        _, regime = centres[has_this_centre].index[0]
-        colour, text = LOOKS[regime]
-        axes.axvspan(level - 0.5, level + 0.5, facecolor=tint(colour), gid=regime)
-        look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
-        axes.annotate(text.replace("\n", " "), (level, 1.02), **look)
+    for _, corners in areas.groupby("series"):
+        centre_left, centre_right = corners[["left", "right"]].mean()
+        # Only the centres of these two quadrants have equal levels.
+        if centre_left == centre_right:
+            regime = corners["regime"].iloc[0]
+            colour, text = LOOKS[regime]
+            left_levels = corners["left"]
+            axes.axvspan(left_levels.min(), left_levels.max(), facecolor=tint(colour), gid=regime)
+            look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
+            axes.annotate(text.replace("\n", " "), (centre_left, 1.02), **look)
 
 
 def tint(colour: str) -> tuple[float, ...]:
@@ -167,26 +170,29 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
     lines occur twice, as mirror images, and only those with the lower level on the left are
     labelled.
 
+    rows : corners of areas and ends of lines, in the columns left and right
     numbers : the numbers from `numbers_of_regimes`
     """
     look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
-    for (role, _), shape in rows.groupby(["role", "series"], sort=False):
-        boundary, regime = shape[["boundary", "regime"]].iloc[0]
+    for _, shape in rows.groupby("series", sort=False):
+        role, boundary, regime = shape[["role", "boundary", "regime"]].iloc[0]
         corners = shape[["left", "right"]].to_numpy()
-        # The centre of the shape.
-        left, right = corners.mean(axis=0)
+        centre_left, centre_right = corners.mean(axis=0)
         colour, text = LOOKS[regime]
         text = numbers.get((boundary, regime), "") + text
         if role == "line":
-            axes.plot(*corners.T, color=colour, linewidth=3.0, solid_capstyle="butt", gid=regime)
-            if left < right:
-                axes.text(left, -0.1, text, **look)
-            continue
-        axes.add_patch(Polygon(corners, facecolor=tint(colour), gid=regime))
-        is_quadrant = len(corners) == 4
+            line: Look = {"color": colour, "linewidth": 3.0, "solid_capstyle": "butt"}
+            axes.plot(shape["left"], shape["right"], gid=regime, **line)
+        else:
+            axes.add_patch(Polygon(corners, facecolor=tint(colour), gid=regime))
+        is_quadrant = role == "area" and len(corners) == 4
         if is_quadrant:
-            axes.text(left, right + 0.1 if right > 0.0 else right, text, **look)
-        elif left < right:
+            # In the upper quadrants, the label leaves room for that of a narrow area below it.
+            height = centre_right + 0.1 if centre_right > 0.0 else centre_right
+            axes.text(centre_left, height, text, **look)
+        elif centre_left < centre_right and role == "line":
+            axes.text(centre_left, -0.1, text, **look)
+        elif centre_left < centre_right:
             # The label of a narrow area stands outside, with a line that points to the area.
             pointer = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
             axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=pointer, **look)

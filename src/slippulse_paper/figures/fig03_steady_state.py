@@ -8,7 +8,7 @@ from slippulse.plotting.style import PAGE_WIDTH, new_panels
 from .shared.pulse_panels import (
     draw_prestress,
     draw_pulses,
-    handles,
+    legend_entries,
     pulse_table,
     styled_runs,
     title,
@@ -35,13 +35,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the displacement boundary on the left and the stress boundary on the right."""
     figure, panels = new_panels(PAGE_WIDTH, 3.3, "ab")
-    # Half-length of the inset with the pre-stress, in widths of the widest Gaussian.
-    half_lengths = {"displacement": 6.0, "stress": 5.0}
-    for axes, (boundary, half_length) in zip(panels, half_lengths.items(), strict=True):
+    # Half of the length that the inset with the pre-stress shows, in widths of the widest Gaussian.
+    half_lengths_in_widths = {"displacement": 6.0, "stress": 5.0}
+    inset_box = (0.08, 0.6, 0.26, 0.29)
+    for axes, (boundary, half_length) in zip(panels, half_lengths_in_widths.items(), strict=True):
         rows = table[table["panel"] == boundary]
         draw_pulses(axes, rows, "slip_velocity")
-        draw_prestress(axes, (0.08, 0.6, 0.26, 0.29), styled_runs(rows), half_length)
+        draw_prestress(axes, inset_box, styled_runs(rows), half_length)
         axes.set(title=title(rows), ylim=(-0.03, 1.06))
         below_panel = (0.5, -0.17)
-        axes.legend(handles=handles(rows), loc="upper center", bbox_to_anchor=below_panel, ncols=3)
+        entries = legend_entries(rows)
+        axes.legend(handles=entries, loc="upper center", bbox_to_anchor=below_panel, ncols=3)
     return figure

@@ -39,7 +39,7 @@ MARK_LOOK: Look = {
 
 
 class RuptureExtent(NamedTuple):
-    """The position of the left front and the distance between both fronts, at one time."""
+    """A time, with the position of the left front and the distance between both fronts."""
 
     time: float
     left: float
@@ -47,23 +47,22 @@ class RuptureExtent(NamedTuple):
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the space-time rows of the first run of each sweep, with these additional roles.
+    """Return the rows of `space_time.run_table` for the first run of each sweep, and more roles.
 
     exact_front, exact_trailing : front and trailing edge of the exact solution
-    measured, paper : the measured transition, and the paper's estimate of it
-    last_release : the last release of the left front (stress boundary only)
-    fraction : the fraction of its way to x_minus that the left front has covered at T_trans (stress
-        boundary only)
-
-    The roles measured, paper and last_release have one row for each front, with its position. Both
-    rows have the time, and the distance between the fronts as value.
+    measured, paper, last_release : the transition as measured and by the paper's estimate, and the
+        last release of the left front (see `rupture_extents`). Each has one row for each front,
+        with its position and the time. The value is the distance between both fronts
+    fraction : under a stress boundary, the transition is when the left front has covered this
+        fraction of its way to the balance position x_minus
     """
     parts = []
     for panel in PANELS:
         simulation = f"space_time_{panel}"
         run = point(data[simulation], 0)
         rows = [space_time.run_table(run)]
-        for role, extent in rupture_extents(run, tables[simulation].iloc[0]).items():
+        numbers = tables[simulation].iloc[0]
+        for role, extent in rupture_extents(run, numbers).items():
             right = extent.left + extent.length
             fronts = pd.DataFrame({"series": ["left", "right"], "position": [extent.left, right]})
             rows.append(fronts.assign(role=role, time=extent.time, value=extent.length))
@@ -79,22 +78,25 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)[COLUMNS]
 
 
-def rupture_extents(run: AnyRun, measured: pd.Series) -> dict[str, RuptureExtent]:
-    """Return the extent of the rupture for the roles measured, paper and last_release of `table`.
+def rupture_extents(run: AnyRun, numbers: pd.Series) -> dict[str, RuptureExtent]:
+    """Return the extent of the rupture at its transition, and at the last release on the left.
 
-    measured : the row of the run in the measured table
+    The transition is given as measured ("measured"), and by the paper's estimate ("paper"). The
+    last release ("last_release") exists only under a stress boundary.
+
+    numbers : measured and predicted numbers of the run
     """
-    time, length = measured["transition_time"], measured["transition_length"]
+    time, length = numbers["transition_time"], numbers["transition_length"]
     left = front_position(run, time, "right") - length
     extents = {"measured": RuptureExtent(time, left, length)}
     # The estimates of the paper have no position, and are drawn symmetric about x = 0.
-    length = measured["paper_transition_length"]
-    extents["paper"] = RuptureExtent(measured["paper_transition_time"], -0.5 * length, length)
-    if "last_release_time" in measured:
+    length = numbers["paper_transition_length"]
+    extents["paper"] = RuptureExtent(numbers["paper_transition_time"], -0.5 * length, length)
+    if "last_release_time" in numbers:
         extents["last_release"] = RuptureExtent(
-            time=measured["last_release_time"],
-            left=-measured["last_release_distance"],
-            length=measured["last_release_length"],
+            time=numbers["last_release_time"],
+            left=-numbers["last_release_distance"],
+            length=numbers["last_release_length"],
         )
     return extents
 
@@ -158,29 +160,29 @@ def draw_last_release(axes: Axes, left_front: pd.DataFrame, x_minus: float) -> N
     axes.plot(left_front["time"], left_front["position"], "o", **look)
 
 
-def draw_arrows(axes: Axes, rupture: RuptureExtent) -> None:
-    """Draw a horizontal arrow for T_trans at the lower edge, and a vertical one for L_trans.
+def draw_arrows(axes: Axes, transition: RuptureExtent) -> None:
+    """Draw the transition time as a horizontal arrow, and the transition length as a vertical one.
 
-    The vertical arrow leads from front to front at the time T_trans.
+    The horizontal arrow runs from time 0 to the transition, below the map. The vertical arrow leads
+    from front to front at the transition. A dotted line connects both arrows.
     """
-    time, left = rupture.time, rupture.left
+    time, left, length = transition
     bottom, top = axes.get_ylim()
     # The panel is extended downwards, to make room for the horizontal arrow at this height.
-    height = top - bottom
-    arrow_height = bottom - 0.04 * height
-    axes.set_ylim(arrow_height - 0.06 * height, top)
+    map_height = top - bottom
+    arrow_height = bottom - 0.04 * map_height
+    axes.set_ylim(arrow_height - 0.06 * map_height, top)
     arrow: Look = {"arrowstyle": "<->", "shrinkA": 0.0, "shrinkB": 0.0, "linewidth": 0.9}
     arrow |= {"mutation_scale": 8.0, "path_effects": TEXT_OUTLINE}
     dotted: Look = {"color": BLACK, "linewidth": 0.6, "linestyle": ":", "zorder": 3.0}
     axes.plot([time, time], [arrow_height, left], **dotted)
     time_arrow = ((0.0, arrow_height), (time, arrow_height))
-    length_arrow = ((time, left), (time, left + rupture.length))
+    length_arrow = ((time, left), (time, left + length))
     for start, stop in (time_arrow, length_arrow):
         axes.annotate("", xy=stop, xytext=start, arrowprops=arrow, zorder=4.0)
-    look: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE, "zorder": 4.0}
+    text_look: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE, "zorder": 4.0}
     # The label of T_trans stands above its arrow, clear of the ticks of the axis.
     label = rf"$T_\text{{trans}} = {time:#.3g}$"
-    axes.annotate(label, (0.0, arrow_height), (6, 3), va="bottom", **look)
-    label = rf"$L_\text{{trans}} = {rupture.length:#.3g}$"
-    middle = left + 0.5 * rupture.length
-    axes.annotate(label, (time, middle), (4, 0), va="center", **look)
+    axes.annotate(label, (0.0, arrow_height), (6, 3), va="bottom", **text_look)
+    label = rf"$L_\text{{trans}} = {length:#.3g}$"
+    axes.annotate(label, (time, left + 0.5 * length), (4, 0), va="center", **text_look)

@@ -50,22 +50,24 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, boundary: str) -> None:
-    """Draw one column of panels: length, time, and ratio of the length.
+    """Draw one column of panels: measured length, measured time, and ratio of the length.
 
     The face of a marker has the colour of the pre-stress level, and its rim that of gamma or W.
     """
-    *collapse_panels, ratio_axes = panels
-    # The columns of the level (tau_0 or left) and of the second varying parameter (gamma or width).
+    length_axes, time_axes, ratio_axes = panels
+    # The level is called tau_0 if it is the same on both sides, and left otherwise. The second
+    # varying parameter is gamma or width.
     level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
     runs = runs.assign(**{level_column: runs["left"]})
     colours = {
         "c": colour(level_column, runs[level_column]),
         "edgecolors": colour(second_column, runs[second_column]),
     }
-    # Ratios are drawn for a few values of the second parameter.
-    few_runs = runs[runs[second_column].isin(spread_values(runs[second_column], LINE_COUNT))]
+    # Ratios are drawn as functions of the level, for a few values of the second parameter.
+    drawn_values = spread_values(runs[second_column], LINE_COUNT)
+    few_runs = runs[runs[second_column].isin(drawn_values)]
     box = (0.1, 0.6, 0.34, 0.31)
-    for axes, quantity in zip(collapse_panels, QUANTITIES, strict=True):
+    for axes, quantity in ((length_axes, "length"), (time_axes, "time")):
         scaling.draw_collapse(axes, runs, quantity, colours)
         scaling.ratio_inset(axes, box, few_runs, quantity, level_column, second_column)
     scaling.draw_ratio(ratio_axes, few_runs, "length", level_column, second_column)
@@ -74,8 +76,8 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
     are_rising = boundary == "displacement"
     ratio_axes.legend(loc="upper left" if are_rising else "upper right", fontsize=SMALL_TEXT)
-    draw_prestress_inset(panels[0], runs, level_column)
-    panels[0].set_title(BOUNDARIES[boundary], loc="center")
+    draw_prestress_inset(length_axes, runs, level_column)
+    length_axes.set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
         look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
         # The scale of left is stretched, and ticks at equal distances would overlap.
@@ -85,8 +87,12 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
 
 
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:
-    """Add an inset with the pre-stress of a few levels, for the narrowest Gaussian."""
+    """Add an inset with the pre-stress of a few runs: some levels, with the narrowest Gaussian.
+
+    level_column : name of the colour scale of the levels, tau_0 or left
+    """
     has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
     narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]
-    narrow = narrow.assign(colour=[*colour(level_column, narrow[level_column])])
-    draw_prestress(axes, (0.68, 0.17, 0.28, 0.22), narrow, 6.0)
+    narrow = narrow.assign(colour=list(colour(level_column, narrow["left"])))
+    box = (0.68, 0.17, 0.28, 0.22)
+    draw_prestress(axes, box, narrow, half_length_in_widths=6.0)

@@ -133,25 +133,28 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
     """Return the name of each drawn instant, and the index of its sample in time.
 
     The instants are the start, the middle between the start and the first stick, the first stick,
-    the middle between the first stick and the last instant, and the last instant. At the last
-    instant, the rupture still lies within the view.
+    the middle between the first stick and the last instant, and the last instant. The last instant
+    is the last sample at which the rupture still lies within the view.
     """
     first_in_view, last_in_view = view(run)
-    # Slip and velocity have one row for each sampled time and one column for each position.
-    x, velocity = run["sample_position"].values, run["sample_velocity"].values
-    slip = run["sample_slip"].values
-    is_outside = (x <= first_in_view) | (x >= last_in_view)
-    has_slipped_outside = (slip[:, is_outside] > 0.0).any(axis=1)
-    last = int(np.flatnonzero(~has_slipped_outside)[-1])
+    x = run["sample_position"].values
+    # These arrays have one row for each sampled time and one column for each position.
+    slip, velocity = run["sample_slip"].values, run["sample_velocity"].values
+    is_outside_view = (x <= first_in_view) | (x >= last_in_view)
+    has_slip_outside = (slip[:, is_outside_view] > 0.0).any(axis=1)
+    last = int(np.flatnonzero(~has_slip_outside)[-1])
     is_stuck = (slip > 0.0) & (velocity <= 0.0)
+    samples_with_stuck_blocks = np.flatnonzero(is_stuck[: last + 1].any(axis=1))
     # If no block sticks, the run remains a crack until the last instant.
-    first_stick = int(np.argmax(is_stuck.any(axis=1))) if is_stuck[: last + 1].any() else last
-    # Here, "later" stands for the middle between the first stick and the last instant.
-    later = (first_stick + last) // 2
-    # If two instants fall on the same sample, the name of the later one is kept.
-    name_of_sample = {0: "start", first_stick // 2: "crack", first_stick: "first stick"}
-    name_of_sample[later] = "later"
-    name_of_sample[last] = rupture_name(x, velocity[last], is_stuck[last])
+    first_stick = int(samples_with_stuck_blocks[0]) if samples_with_stuck_blocks.size else last
+    # If two instants fall on the same sample, the name of the later one replaces the other.
+    name_of_sample = {
+        0: "start",
+        first_stick // 2: "crack",
+        first_stick: "first stick",
+        (first_stick + last) // 2: "later",
+        last: rupture_name(x, velocity[last], is_stuck[last]),
+    }
     return [(name, sample) for sample, name in sorted(name_of_sample.items())]
 
 
@@ -175,15 +178,16 @@ def draw(table: pd.DataFrame) -> Figure:
     There is one row for each instant; time increases downwards.
     """
     row_counts = table.groupby("panel")["row"].nunique()
-    # Heights in inches of the strip with the pre-stress and of the rows, for each panel.
+    # Each panel has a strip with the pre-stress, and below it axes with the rows of blocks. These
+    # are their heights in inches, from top to bottom.
     heights: list[float] = []
     for name, row_distance in ROW_DISTANCES.items():
         rows_height = SPACING_HEIGHT * (row_distance * row_counts[name] + 0.12)
         heights += [STRIP_HEIGHT, rows_height]
     figure = Figure(figsize=(FIGURE_WIDTH, sum(heights) + 1.75), layout="constrained")
     all_axes = figure.subplots(4, 1, height_ratios=heights)
-    strips, row_panels = all_axes[::2], all_axes[1::2]
-    for name, letter, strip, axes in zip(ROW_DISTANCES, "ab", strips, row_panels, strict=True):
+    strips, axes_of_rows = all_axes[::2], all_axes[1::2]
+    for name, letter, strip, axes in zip(ROW_DISTANCES, "ab", strips, axes_of_rows, strict=True):
         rows = table[table["panel"] == name]
         draw_rows(axes, rows, name)
         strip.sharex(axes)
@@ -217,30 +221,18 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     """Draw the blocks of one run in a row for each instant, with their springs.
 
     Distances are in spacings. The ground of row n lies n row distances below 0.
+
+    name : the boundary condition; with the displacement held, there are leaf springs
     """
     # The panel ends inside of the outermost blocks, so that their springs are cut.
     low, high = rows["x"].min() + 0.35, rows["x"].max() - 0.35
     has_leaf_springs, row_distance = name == "displacement", ROW_DISTANCES[name]
     for row, blocks in rows.groupby("row"):
-        blocks = blocks.sort_values("x")
         ground = -row_distance * row
-        positions_at_rest = blocks["x"].to_numpy()
-        centres = positions_at_rest + (blocks["scale"] * blocks["slip"]).to_numpy()
-        draw_coil_springs(axes, centres, ground)
-        axes.plot([low, high], [ground, ground], color=BLACK, linewidth=0.8)
-        # A tick on the ground marks the position at rest.
-        axes.vlines(positions_at_rest, ground - 0.09, ground, color="0.4", linewidth=0.6)
-        if has_leaf_springs:
-            axes.plot([low, high], [ground + PLATE_HEIGHT] * 2, color=BLACK, linewidth=1.8)
-            draw_leaf_springs(axes, positions_at_rest, centres, ground)
-        is_framed = blocks["arresting_block"]
-        look: Look = {"edgecolor": np.where(is_framed, BLACK, "0.2")}
-        look |= {"linewidth": np.where(is_framed, 1.8, 0.5), "zorder": 3}
-        look["color"] = blocks["state"].map(STATE_COLOURS)
-        axes.bar(centres, BLOCK_HEIGHT, BLOCK_WIDTH, ground, **look)
+        draw_row(axes, blocks.sort_values("x"), (low, high), ground, has_leaf_springs)
         first = blocks.iloc[0]
         text = rf"$t = {first['time']:.1f}$" + "\n" + first["instant"]
-        look = {"ha": "right", "va": "center", "linespacing": 0.95}
+        look: Look = {"ha": "right", "va": "center", "linespacing": 0.95}
         axes.text(low - 0.2, ground + 0.5 * BLOCK_HEIGHT, text, **look)
     top = (PLATE_HEIGHT if has_leaf_springs else BLOCK_HEIGHT) + 0.08
     bottom = -row_distance * rows["row"].max() - 0.2
@@ -249,6 +241,36 @@ def draw_rows(axes: Axes, rows: pd.DataFrame, name: str) -> None:
     axes.set_xlabel(f"position $x$ at rest; displacement drawn: {scale}")
     axes.xaxis.set_major_locator(MultipleLocator(2))
     axes.spines[["left", "right", "top"]].set_visible(False)
+
+
+def draw_row(
+    axes: Axes,
+    blocks: pd.DataFrame,
+    ends: tuple[float, float],
+    ground: float,
+    has_leaf_springs: bool,
+) -> None:
+    """Draw the blocks at one instant, displaced by their scaled slip, and their springs.
+
+    ends : horizontal positions of the ends of the ground, and of the plate above the blocks
+    ground : height of the ground
+    """
+    positions_at_rest = blocks["x"].to_numpy()
+    centres = positions_at_rest + (blocks["scale"] * blocks["slip"]).to_numpy()
+    draw_coil_springs(axes, centres, ground)
+    axes.plot(ends, [ground, ground], color=BLACK, linewidth=0.8)
+    # A tick on the ground marks the position at rest.
+    axes.vlines(positions_at_rest, ground - 0.09, ground, color="0.4", linewidth=0.6)
+    if has_leaf_springs:
+        plate = ground + PLATE_HEIGHT
+        axes.plot(ends, [plate, plate], color=BLACK, linewidth=1.8)
+        draw_leaf_springs(axes, positions_at_rest, centres, ground)
+    # The block that stops the left front has a thick frame.
+    is_framed = blocks["arresting_block"]
+    look: Look = {"edgecolor": np.where(is_framed, BLACK, "0.2")}
+    look |= {"linewidth": np.where(is_framed, 1.8, 0.5), "zorder": 3}
+    look["color"] = blocks["state"].map(STATE_COLOURS)
+    axes.bar(centres, BLOCK_HEIGHT, BLOCK_WIDTH, ground, **look)
 
 
 def draw_coil_springs(axes: Axes, centres: np.ndarray, ground: float) -> None:

@@ -112,11 +112,16 @@ def draw_dimensions(axes: Axes, top: float) -> None:
 def label_displacements(axes: Axes, top: float, slip: float, imposed: float) -> None:
     """Write names beside the arrows of slip and imposed displacement, and beside the curves.
 
-    slip, imposed : lengths of the two arrows
+    The curves are the displacement before and after slip. Lengths are in thicknesses of the damage
+    zone.
+
+    top : height of the upper end of the host rock
+    slip, imposed : lengths of the arrows below the damage zone and above the host rock
     """
     zero = ZERO_DISPLACEMENT
     label(axes, zero + 0.5 * slip, -0.22, r"slip $\delta$", ORANGE, va="top")
     label(axes, zero + 0.5 * imposed, top + 0.2, r"imposed $\hat u$", va="bottom")
     label(axes, zero + 1.45, 1.5, "before", "0.35", ha="right")
     label(axes, zero + 1.45, 0.4, "after", BLUE, ha="left")
+    # The shaded area between both curves is the change of the displacement.
     label(axes, zero + 0.61 * slip, 0.15, "change", BLUE, fontsize=7.0)

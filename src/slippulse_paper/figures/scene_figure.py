@@ -21,8 +21,8 @@ from .shared.main_numbers import with_symbols
 # A field at the end is drawn at about this number of blocks.
 PROFILE_POINTS = 400
 FIELDS = {"slip_velocity": r"slip velocity $\dot u$", "slip": r"slip $u$"}
-# The largest value of each field in a steady pulse is this predicted number of the pulse.
-LARGEST_VALUES = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
+# Column of the largest value of each field in a pulse; with a prefix, that of its exact value.
+LARGEST_VALUE_COLUMNS = {"slip_velocity": "pulse_peak_velocity", "slip": "pulse_slip"}
 
 
 def table(
@@ -38,7 +38,7 @@ def table(
 
     title : the title of the scene
     profile : a field at the end of the run, as a function of position
-    steady : the largest value of a field in the exact steady pulse of each side
+    steady : the largest value of a field in the exact steady pulse on each side
     number : one of the numbers below the panels
 
     Parameters
@@ -78,65 +78,72 @@ def profile_rows(run: xr.Dataset, field: str) -> pd.DataFrame:
 
 
 def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
-    """Return the largest value of each field in the exact steady pulse of each side.
+    """Return the largest slip and slip velocity of the exact steady pulse on each side.
 
-    It is drawn as a line from x = 0 to the column position, which is the end of the drawn range on
-    the side of the pulse. Sides without a pulse or without theory have no rows.
+    Each is drawn as a horizontal line from x = 0 to the column position, which is the end of the
+    drawn range on the side of the pulse. Sides without a pulse or without theory have no rows.
+
+    theory : measured and predicted numbers of the run
     """
     lower, upper = space_time.drawn_range(run)
     # Only the pulse on the right is measured. On the left there is a pulse if any block has stuck.
     has_left_pulse = math.isfinite(run.attrs["first_stick_time"])
     has_right_pulse = theory["pulse_state"] not in ("none", "stopped")
     rows = []
-    for field, largest in LARGEST_VALUES.items():
+    for field, column in LARGEST_VALUE_COLUMNS.items():
         if has_left_pulse:
-            rows.append((field, lower, theory[f"exact_left_{largest}"]))
+            rows.append((field, lower, theory[f"exact_left_{column}"]))
         if has_right_pulse:
-            rows.append((field, upper, theory[f"exact_{largest}"]))
+            rows.append((field, upper, theory[f"exact_{column}"]))
     columns = ["series", "position", "value"]
     return pd.DataFrame(rows, columns=columns).assign(role="steady").dropna()
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the space-time map, both fields at the end, and the numbers, in three rows."""
-    roles, no_rows = by_role(table), table.iloc[:0]
-    numbers, steady = roles.get("number", no_rows), roles.get("steady", no_rows)
+    """Draw in three rows the space-time map, slip velocity and slip at the end, and the numbers."""
+    roles = by_role(table)
+    # A run may have neither numbers nor exact steady pulses.
+    no_rows = table.iloc[:0]
+    numbers, steady_pulses = roles.get("number", no_rows), roles.get("steady", no_rows)
     # Numbers are written in two columns.
     line_count = math.ceil(len(numbers) / 2)
-    figure = Figure(figsize=(PAGE_WIDTH, 4.9 + 0.16 * line_count), layout="constrained")
-    heights = (3.1, 1.6, 0.2 + 0.16 * line_count)
+    text_height = 0.16 * line_count
+    figure = Figure(figsize=(PAGE_WIDTH, 4.9 + text_height), layout="constrained")
+    heights = (3.1, 1.6, 0.2 + text_height)
     upper, middle, lower = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     prestress_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
     space_time.draw_profile(prestress_axes, roles)
     space_time.draw_map(map_axes, roles)
     map_axes.legend(loc="upper left")
     panel_letter(prestress_axes, "a")
+    # A dollar sign in the title is a character, and does not begin a formula.
     title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
     upper.suptitle(f"{title}\n{space_time.run_title(roles)}")
     for axes, letter, field in zip(middle.subplots(1, 2), "bc", FIELDS, strict=True):
-        draw_field(axes, roles, field, steady[steady["series"] == field])
+        draw_field(axes, roles, field, steady_pulses[steady_pulses["series"] == field])
         panel_letter(axes, letter)
     write_numbers(lower, numbers, line_count)
     return figure
 
 
 def draw_field(
-    axes: Axes, roles: dict[str, pd.DataFrame], field: str, steady: pd.DataFrame
+    axes: Axes, roles: dict[str, pd.DataFrame], field: str, steady_pulses: pd.DataFrame
 ) -> None:
-    """Draw a field at the end, and dashed lines at its largest value in steady pulses.
+    """Draw a field at the end, and as dashed lines its largest values in exact steady pulses.
 
-    steady : the rows of `steady_rows` for this field
+    field : "slip_velocity" or "slip"
+    steady_pulses : the rows of `steady_rows` for this field
     """
     rows = roles["profile"][roles["profile"]["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
-    axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
+    handles = axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
     look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
-    for pulse in steady.itertuples():
-        axes.plot([0.0, pulse.position], [pulse.value] * 2, "--", **look)
+    for pulse in steady_pulses.itertuples():
+        handles += axes.plot([0.0, pulse.position], [pulse.value, pulse.value], "--", **look)
     # The legend stands in the panel of the velocity, which is 0 in the middle. It holds for both
-    # panels.
-    if len(axes.lines) > 2 and field == "slip_velocity":
-        axes.legend(handles=axes.lines[1:3], loc="center")
+    # panels, and has one entry for all steady pulses.
+    if len(handles) > 1 and field == "slip_velocity":
+        axes.legend(handles=handles[:2], loc="center")
     axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
     # A label with a unit needs a second line, since the panel is low.
     separator = "\n" if "unit" in roles else " "

@@ -31,9 +31,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     study = tables["accuracy_cost"]
     trade = study[study["part"] == "trade"]
-    # The column work has the cost of all quantities.
-    errors = error_rows(trade, "work", lambda quantity: "work").assign(part="trade")
-    table = pd.concat([study[study["part"] == "locking"], errors], ignore_index=True)
+    # The cost is the work of a run, which is the same for every quantity that the run gives.
+    errors = error_rows(trade, cost="work", cost_column_of=lambda quantity: "work")
+    table = pd.concat(
+        [study[study["part"] == "locking"], errors.assign(part="trade")], ignore_index=True
+    )
     columns = ["part", "role", "quantity", "scheme", "order", "step", "dx", "work", "error"]
     return table[[*columns, "preset", "front_speed", "exact"]]
 

@@ -4,6 +4,8 @@ In the continuum the front approaches the balance position x_minus for ever. A t
 only at a stated fraction of its path.
 """
 
+from typing import TypeAlias
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from slippulse.data.point import point
+from slippulse.data.points import AnyRun
 from slippulse.measurement.front_paths import front_path
 from slippulse.plotting import style
 from slippulse.plotting.style import GREY, MARKERS, OPEN_MARKER, ORANGE, PAGE_WIDTH, Look, entry
@@ -26,6 +29,8 @@ DRAWS = {
     "arrest": "boundary stress, left level below 0, right level 0 and no steps",
 }
 
+# A name such as "#D55E00", or red, green, blue and opacity.
+Colour: TypeAlias = str | np.ndarray
 # A path on a lattice is drawn with at most this number of points.
 PATH_POINTS = 150
 SIMULATION_LOOK: Look = {"linewidth": 3.0, "alpha": 0.35}
@@ -34,15 +39,15 @@ SIMULATION_LOOK: Look = {"linewidth": 3.0, "alpha": 0.35}
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
-    run : one row for each run, with the time of the last release on the left, and the time at which
-        the left front has covered the stated fraction of its path
+    run : one row for each run, with the time of the last release on the left (last_release), and
+        the time at which the left front has covered the stated fraction of its path (fraction_time)
     path, exact_path : for each damping ratio, the fraction of the path that the left front has not
         yet covered (to_go) as a function of time, on the finest lattice and exact
 
-    Times and distances are in units of the length of the path, the balance distance |x_minus|.
+    Times are divided by the balance distance |x_minus|, which is the length of the path.
     """
     runs = tables["arrest"]
-    # The paper's estimate of the transition time is |x_minus|, as the wave speed is 1.
+    # The paper estimates that the transition takes the time |x_minus|, since the wave speed is 1.
     balance_distance = runs["paper_transition_time"]
     times = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(
         role="run",
@@ -52,39 +57,49 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         exact_fraction_time=runs["exact_transition_time"] / balance_distance,
     )
     parts = [times, tables["arrest_path"].assign(role="exact_path")]
-    finest_runs = runs.groupby("damping_ratio")["dx"].idxmin()
-    for ratio, index in finest_runs.items():
-        time, distance = front_path(point(data["arrest"], int(index)), "left")
-        kept = np.unique(np.linspace(0, time.size - 1, PATH_POINTS).astype(int))
-        relative_time = time / balance_distance[index]
-        relative_distance = distance / balance_distance[index]
-        path = {"time": relative_time[kept], "to_go": 1.0 - relative_distance[kept]}
-        parts.append(pd.DataFrame(path).assign(role="path", damping_ratio=ratio))
+    number_of_finest_run = runs.groupby("damping_ratio")["dx"].idxmin()
+    for ratio, number in number_of_finest_run.items():
+        path = lattice_path(point(data["arrest"], int(number)), balance_distance[number])
+        parts.append(path.assign(role="path", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) the remaining distance by time, (b) two times of arrest by spacing.
+def lattice_path(run: AnyRun, balance_distance: float) -> pd.DataFrame:
+    """Return the fraction of its path that the left front has not yet covered (column to_go).
 
-    The two times are that of the stated fraction of the path and that of the last release.
+    The column time has the times, divided by the balance distance. At most PATH_POINTS of the
+    blocks are kept.
+    """
+    time, distance = front_path(run, "left")
+    kept = np.unique(np.linspace(0, time.size - 1, PATH_POINTS).astype(int))
+    relative_time, covered = time[kept] / balance_distance, distance[kept] / balance_distance
+    return pd.DataFrame({"time": relative_time, "to_go": 1.0 - covered})
+
+
+def draw(table: pd.DataFrame) -> Figure:
+    """Draw (a) the distance still to go as a function of time, (b) two times of the left front.
+
+    These are the times of its last release and of the stated fraction of its path, as functions of
+    the spacing.
     """
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE_WIDTH, 3.1, "ab")
     end = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The colour scale is logarithmic and has no colour for 0.
-        colour = style.colour("damping_ratio", ratio) if ratio > 0.0 else ORANGE
-        look: Look = {"color": colour}
+        colour: Colour = style.colour("damping_ratio", ratio) if ratio > 0.0 else ORANGE
         roles = style.by_role(rows)
-        draw_path(path_axes, roles["path"], roles["exact_path"], end, look)
-        path_end = roles["path"].iloc[-1]
+        draw_path(path_axes, roles["path"], roles["exact_path"], end, colour)
+        # A marker stands at the end of the path on the lattice.
+        last = roles["path"].iloc[-1]
         label = f"$b$ = {ratio:g}"
-        path_axes.plot(path_end["time"], path_end["to_go"], marker, label=label, **look)
-        draw_times(spacing_axes, roles["run"].sort_values("dx"), marker, look)
+        path_axes.plot(last["time"], last["to_go"], marker, label=label, color=colour)
+        draw_times(spacing_axes, roles["run"].sort_values("dx"), marker, colour)
     fraction = table["fraction"].max()
     style.legend_below(figure, [*style.legend_handles([path_axes]), *legend_entries(fraction)], 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
-    levels = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
-    scene = style.conditions(False, **levels)
+    # All runs have the same pre-stress.
+    parameters = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
+    scene = style.conditions(False, **parameters)
     path_axes.set(ylabel=r"still to go, $1-|x|/|x_{-}|$", title=scene)
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
     style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))
@@ -92,25 +107,29 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_path(
-    axes: Axes, simulated: pd.DataFrame, exact: pd.DataFrame, end: float, look: Look
+    axes: Axes, simulated: pd.DataFrame, exact: pd.DataFrame, end: float, colour: Colour
 ) -> None:
-    """Draw the remaining distance of one left front, on a lattice and exact, by time.
+    """Draw the distance that one left front has still to go, as a function of time.
+
+    The wide pale line is from a lattice, and the thin line is exact.
 
     end : time up to which the exact distance is drawn
     """
     exact = exact[exact["time"] <= end]
-    axes.plot(simulated["time"], simulated["to_go"], **SIMULATION_LOOK | look)
-    axes.plot(exact["time"], exact["to_go"], linewidth=0.9, **look)
+    axes.plot(simulated["time"], simulated["to_go"], color=colour, **SIMULATION_LOOK)
+    axes.plot(exact["time"], exact["to_go"], linewidth=0.9, color=colour)
 
 
-def draw_times(axes: Axes, runs: pd.DataFrame, marker: str, look: Look) -> None:
-    """Draw both times of arrest as functions of the spacing, at one damping ratio.
+def draw_times(axes: Axes, runs: pd.DataFrame, marker: str, colour: Colour) -> None:
+    """Draw two times of the left front as functions of the spacing, at one damping ratio.
 
-    The exact time of the stated fraction is marked on the left of the finest spacing.
+    A solid line is the time of the last release, and a dashed line is the time at which the front
+    has covered the stated fraction of its path. The exact value of the latter is marked on the left
+    of the finest spacing.
     """
-    axes.plot(runs["dx"], runs["last_release"], marker=marker, **look)
-    axes.plot(runs["dx"], runs["fraction_time"], marker + "--", **OPEN_MARKER | look)
-    axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", **look)
+    axes.plot(runs["dx"], runs["last_release"], marker=marker, color=colour)
+    axes.plot(runs["dx"], runs["fraction_time"], marker + "--", color=colour, **OPEN_MARKER)
+    axes.plot(runs["dx"].min() * 0.8, runs["exact_fraction_time"].iloc[0], "<", color=colour)
 
 
 def legend_entries(fraction: float) -> list[Line2D]:

@@ -39,7 +39,7 @@ CURVE_LEVELS = (0.2, 0.5, 0.8)
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column part names.
 
-    depth : depths on lattices and exact ones, as in the study
+    depth : depths on lattices (column measured) and exact ones, as in the study
     fine : exact depths at gamma = 1, interpolated to a finer map
     curve : exact depths and the authors' later estimate (column paper), interpolated to the levels
         CURVE_LEVELS, at CURVE_GAMMA
@@ -48,10 +48,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     parts = [study[study["part"] == "depth"]]
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
-        fine = _interpolated(rows, levels, 1.0, {"exact": 0.5})
+        fine = _interpolated(rows, levels, gamma=1.0, powers={"exact": 0.5})
         # Exact depths are proportional to gamma^(-1/2), and the estimate to gamma^(-1).
         powers = {"exact": 0.5, "paper": 1.0}
-        curve = _interpolated(rows, np.array(CURVE_LEVELS), CURVE_GAMMA, powers)
+        curve = _interpolated(rows, np.array(CURVE_LEVELS), gamma=CURVE_GAMMA, powers=powers)
         parts.append(fine.assign(part="fine", damping_ratio=ratio))
         parts.append(curve.assign(part="curve", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
@@ -60,30 +60,33 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def _interpolated(
     rows: pd.DataFrame, levels: np.ndarray, gamma: float, powers: dict[str, float]
 ) -> pd.DataFrame:
-    """Interpolate depths between the levels tau_0 and barriers tau_b of the study.
+    """Interpolate depths between the levels tau_0 and the barriers tau_b of the study.
 
-    The barriers of the result are evenly spaced in the logarithm.
+    The result has one row for each pair of one of ``levels`` and one of MAP_POINTS barriers, which
+    are evenly spaced in the logarithm.
 
-    rows : depths at gamma = 1
+    rows : depths of the study at gamma = 1
     levels : levels tau_0 before the barrier, for the result
     gamma : the gamma to which depths are scaled
-    powers : for each column of depths, the power p of its proportionality to gamma^(-p)
+    powers : columns of depths that are interpolated; a depth with the power p is proportional to
+        gamma^(-p)
     """
     # The logarithm of the depth is nearly linear in tau_0 and in log |tau_b|.
-    known_levels = np.sort(rows["tau0"].unique())
-    known_log_barriers = np.sort(np.log(-rows["barrier"].unique()))
-    log_barriers = np.linspace(known_log_barriers[0], known_log_barriers[-1], MAP_POINTS)
+    study_levels = np.sort(rows["tau0"].unique())
+    study_log_barriers = np.sort(np.log(-rows["barrier"].unique()))
+    log_barriers = np.linspace(study_log_barriers[0], study_log_barriers[-1], MAP_POINTS)
     pairs = pd.MultiIndex.from_product([levels, -np.exp(log_barriers)], names=["tau0", "barrier"])
-    columns = pairs.to_frame(index=False)
-    for name, power in powers.items():
-        # One row for each level and one column for each barrier. The columns are reversed, so that
-        # |tau_b| rises from left to right.
-        known_depths = rows.pivot(index="tau0", columns="barrier", values=name).to_numpy()[:, ::-1]
-        # The depths are interpolated first between the levels, and then between the barriers.
-        at_levels = barycentric_interpolate(known_levels, np.log(known_depths), levels)
-        log_depths = barycentric_interpolate(known_log_barriers, at_levels, log_barriers, axis=1)
-        columns[name] = np.exp(log_depths).ravel() / gamma**power
-    return columns.assign(gamma=gamma)
+    result = pairs.to_frame(index=False)
+    for column, power in powers.items():
+        # One row for each level and one column for each barrier of the study. The columns are
+        # reversed, so that |tau_b| rises from left to right.
+        study_depths = rows.pivot(index="tau0", columns="barrier", values=column).iloc[:, ::-1]
+        log_study_depths = np.log(study_depths.to_numpy())
+        # The interpolation is first between the levels, and then between the barriers.
+        at_levels = barycentric_interpolate(study_levels, log_study_depths, levels)
+        log_depths = barycentric_interpolate(study_log_barriers, at_levels, log_barriers, axis=1)
+        result[column] = np.exp(log_depths).ravel() / gamma**power
+    return result.assign(gamma=gamma)
 
 
 def draw(table: pd.DataFrame) -> Figure:
@@ -92,11 +95,11 @@ def draw(table: pd.DataFrame) -> Figure:
     fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
     finest = runs[runs["dx"] == runs["dx"].min()]
     ratios = np.sort(runs["damping_ratio"].unique())
-    depths = Depths(fine["exact"].min(), fine["exact"].max())
+    depth_range = DepthRange(fine["exact"].min(), fine["exact"].max())
     for axes, ratio in zip(map_panels, ratios, strict=True):
         exact_depths = fine[fine["damping_ratio"] == ratio]
         lattice_depths = finest[finest["damping_ratio"] == ratio]
-        image = _draw_map(axes, exact_depths, lattice_depths, depths)
+        image = _draw_map(axes, exact_depths, lattice_depths, depth_range)
         axes.set_title(conditions(True, damping_ratio=ratio))
     bar = figure.colorbar(image, ax=map_panels, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
@@ -109,25 +112,28 @@ def draw(table: pd.DataFrame) -> Figure:
     return figure
 
 
-class Depths(NamedTuple):
-    """The smallest and the largest depth in both maps."""
+class DepthRange(NamedTuple):
+    """The smallest and the largest exact depth in both maps."""
 
     smallest: float
     largest: float
 
 
-def _draw_map(axes: Axes, fine: pd.DataFrame, runs: pd.DataFrame, depths: Depths) -> QuadContourSet:
+def _draw_map(
+    axes: Axes, fine: pd.DataFrame, runs: pd.DataFrame, depth_range: DepthRange
+) -> QuadContourSet:
     """Draw exact depths in colour and as contours, and lattice runs as markers.
 
     The axes are the level tau_0 before the barrier and the level -tau_b of the barrier. A marker
     has the colour of its depth, and a shape for each gamma. Return the coloured map.
 
-    depths : range of the colours
+    fine : exact depths at gamma = 1, on a fine grid of levels
+    runs : depths on lattices; they are scaled to gamma = 1
     """
-    # Only the light part of the colour map is used, so that dark lines are visible.
-    norm = LogNorm(depths.smallest, 3.0 * depths.largest)
-    shades: Look = {"norm": norm, "cmap": "GnBu"}
-    bands = np.geomspace(depths.smallest, depths.largest, COLOUR_BANDS)
+    smallest, largest = depth_range
+    # The largest depth is not the darkest colour, so that dark lines are visible on it.
+    shades: Look = {"norm": LogNorm(smallest, 3.0 * largest), "cmap": "GnBu"}
+    bands = np.geomspace(smallest, largest, COLOUR_BANDS)
     # One row for each barrier and one column for each level before it.
     grid = fine.pivot(index="barrier", columns="tau0", values="exact").sort_index()
     image = axes.contourf(grid.columns, -grid.index, grid, levels=bands, extend="both", **shades)
@@ -135,6 +141,7 @@ def _draw_map(axes: Axes, fine: pd.DataFrame, runs: pd.DataFrame, depths: Depths
     lines = axes.contour(grid.columns, -grid.index, grid, **look)
     axes.clabel(lines, fmt="%g", fontsize=SMALL_TEXT, zorder=2.5)
     for marker, (gamma, group) in zip(MARKERS, runs.groupby("gamma"), strict=False):
+        # Exact depths are proportional to gamma^(-1/2).
         depth = group["measured"] * np.sqrt(gamma)
         look = {"c": depth, "edgecolors": BLACK, "s": 26.0, "linewidths": 0.9} | shades
         axes.scatter(group["tau0"], -group["barrier"], marker=marker, zorder=3.0, **look)
@@ -160,9 +167,10 @@ def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
 
 
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:
-    """Draw depths as functions of the barrier: exact, by the estimate, and on the finest lattices.
+    """Draw depths as functions of the level of the barrier, with one colour for each level before.
 
-    All depths are scaled to CURVE_GAMMA.
+    Lines are exact, dashed lines are the authors' later estimate (column paper), and markers are
+    runs on the finest lattices (column measured). All depths are scaled to CURVE_GAMMA.
     """
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):

@@ -90,8 +90,8 @@ def _scene_entries(scenes: pd.DataFrame) -> list[Line2D]:
     for scene in scenes.itertuples():
         has_springs = scene.gamma > 0.0
         parameters = {"gamma": scene.gamma} if has_springs else {}
-        # Equal levels are written once.
-        levels = ", ".join(dict.fromkeys([setting(scene.left), setting(scene.right)]))
+        left, right = setting(scene.left), setting(scene.right)
+        levels = left if left == right else f"{left}, {right}"
         label = rf"{style.conditions(has_springs, **parameters)}, $\tau_0$ = {levels}"
         entries.append(style.entry(label, color=SCENE_COLOURS[str(scene.scene)]))
     return entries
@@ -108,6 +108,7 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
             axes.plot(line["dx"], line["difference"], marker + "-", **look)
         label = "slip velocity" if quantity == "velocity" else quantity
         axes.plot([], [], marker, color=GREY, label=label)
+    # A dotted guide: the difference 1.5 dx, which falls with first order.
     style.draw_first_order(axes, rows["dx"], slope=1.5, colour=GREY)
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))

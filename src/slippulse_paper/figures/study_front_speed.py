@@ -43,21 +43,22 @@ COLUMNS += ["springs", "held", "fixed"]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the lines of the study front_law (role theory) and runs (role simulation).
+    """Return the exact lines of the study front_law (role theory) and runs (role simulation).
 
-    The column panel names the panel of a row: prestress, springs or refined. The column sound is
-    True if the theory should hold for a run.
+    The column panel names the panel of a row: prestress, springs or refined. A run has its measured
+    speed, its theoretical speed (theory), and the speed without damping (undamped). The column
+    sound is True if the theory should hold for a run.
     """
     lines = tables["front_law"].assign(role="theory")
     runs = pd.concat(
         [uniform_runs(tables), spring_runs(tables, lines), refined_runs(tables, lines)]
     )
+    # The theory of fronts with leaf springs needs a steady and wide pulse.
     is_steady = runs["pulse_state"] == "steady"
     is_wide = runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
-    # Only the theory of fronts with leaf springs needs a steady and wide pulse.
-    has_no_springs = runs["panel"] == "prestress"
-    # The lattice law includes leaf springs. Where it has no speed, because leaf springs are absent
-    # or hardly matter, the exact law without leaf springs is used.
+    has_springs = runs["panel"] != "prestress"
+    # This theory gives the lattice_front_speed. Where it has no speed, because leaf springs are
+    # absent or hardly matter, the exact theory without leaf springs is used.
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     rows = runs[COLUMNS].assign(
         role="simulation",
@@ -65,7 +66,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         # For refined lattices, the lines already contain the theory.
         theory=theory.where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
-        sound=runs["run_flags"].isna() & ((is_steady & is_wide) | has_no_springs),
+        sound=runs["run_flags"].isna() & ((is_steady & is_wide) | ~has_springs),
     )
     return pd.concat([rows, lines], ignore_index=True)
 
@@ -88,37 +89,43 @@ def spring_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
 
 
 def refined_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs on refined lattices that belong to a line.
+    """Return the runs on refined lattices that belong to a theoretical line.
 
-    As dx falls along a line, either beta or b = beta/dx is kept fixed. The column held names the
-    fixed one, and the column fixed has its value.
+    As dx falls along a line, either beta or b = beta/dx is kept fixed. The column held has the name
+    of the fixed one, "beta" or "b", and the column fixed has its value.
     """
     at_fixed_ratio = tables["continuum_fixed_ratio"]
     at_fixed_ratio = at_fixed_ratio.assign(held="b", fixed=at_fixed_ratio["damping_ratio"])
     at_fixed_beta = pd.concat([tables["continuum_fixed_beta"], tables["front_speed_fixed_beta"]])
     at_fixed_beta = at_fixed_beta.assign(held="beta", fixed=at_fixed_beta["beta"])
     runs = pd.concat([at_fixed_ratio, at_fixed_beta])
-    columns = ["release", "left", "gamma", "held", "fixed"]
-    parameters_of_lines = lines.loc[lines["panel"] == "refined", columns].drop_duplicates()
+    line_columns = ["release", "left", "gamma", "held", "fixed"]
+    parameters_of_lines = lines.loc[lines["panel"] == "refined", line_columns].drop_duplicates()
     # Merging keeps only the runs that have the parameters of a line.
     return runs.merge(parameters_of_lines).assign(panel="refined")
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a, b) both release rules, (c) leaf springs and (d) refined lattices."""
+    """Draw (a, b) both release rules, (c) leaf springs and (d) refined lattices.
+
+    A legend above all panels has the colours of the damping ratios.
+    """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     total_axes, elastic_axes, spring_axes, refined_axes = panels
-    rows_of = {str(panel): rows for panel, rows in table.groupby("panel")}
+    rows_by_panel = {str(panel): rows for panel, rows in table.groupby("panel")}
+    uniform = rows_by_panel["prestress"]
     for axes, rule in zip((total_axes, elastic_axes), RELEASE_RULES, strict=True):
-        rows = rows_of["prestress"]
-        _draw_uniform(axes, rows[rows["release"] == rule])
+        _draw_uniform(axes, uniform[uniform["release"] == rule])
         axes.set_title(rf"$\Gamma = 0$, release by {rule} stress")
     total_axes.set(yscale="log", ylim=(0.93, 30.0))
     few_ticks(total_axes.yaxis, (1, 2, 5, 10, 20))
     elastic_axes.set_ylim(0.98, 1.45)
     _draw_strong_damping(elastic_axes)
-    _draw_springs(spring_axes, rows_of["springs"])
-    _draw_refined(refined_axes, rows_of["refined"], float(rows_of["limit"]["speed"].max()))
+    _draw_springs(spring_axes, rows_by_panel["springs"])
+    # As dx -> 0 at fixed beta, the speed tends to a limit that hardly depends on beta. The largest
+    # one is drawn.
+    limit_at_fixed_beta = float(rows_by_panel["limit"]["speed"].max())
+    _draw_refined(refined_axes, rows_by_panel["refined"], limit_at_fixed_beta)
     style.legend_above(figure, total_axes, title="damping ratio $b$")
     return figure
 
@@ -151,18 +158,17 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     A cross marks where a line ends, because no front beyond is faster than the waves. Levels of the
     pre-stress are distinguished by dashes and markers, and damping ratios by colours.
     """
-    look_of_level = dict(zip(np.unique(rows["left"]), (("--", "s"), ("-", "o")), strict=False))
+    looks = (("--", "s"), ("-", "o"))
+    look_of_level = dict(zip(np.unique(rows["left"]), looks, strict=False))
     for (level, ratio), group in rows.groupby(["left", "damping_ratio"]):
         line = group[group["role"] == "theory"].sort_values("springs")
         dashes, marker = look_of_level[level]
         shade = colour("damping_ratio", ratio)
         axes.plot(line["springs"], line["speed"], dashes, color=shade)
-        # The theory has no speed where no front is faster than the waves. A line ends at the last
-        # point before these.
-        has_speed = line["speed"].notna()
-        next_has_none = line["speed"].isna().shift(-1, fill_value=False)
-        end = line[has_speed & next_has_none]
-        axes.plot(end["springs"], end["speed"], "x", color=shade)
+        # At stiffer springs, no front is faster than the waves, and the theory has no speed.
+        if line["speed"].isna().any():
+            end = line.dropna(subset="speed").tail(1)
+            axes.plot(end["springs"], end["speed"], "x", color=shade)
         _mark_runs(axes, group, "springs", "speed", marker)
     for level, (dashes, marker) in look_of_level.items():
         axes.plot([], [], dashes, marker=marker, color=GREY, label=rf"$\tau_0 = {level:g}$")
@@ -174,24 +180,25 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
 
 
-def _draw_refined(axes: Axes, rows: pd.DataFrame, limit: float) -> None:
+def _draw_refined(axes: Axes, rows: pd.DataFrame, limit_at_fixed_beta: float) -> None:
     """Draw front speeds as functions of the spacing, and two limits as horizontal lines.
 
-    One limit is the speed without damping.
+    Along a line, either beta or b = beta/dx is fixed: its name is in the column held, and its value
+    in the column fixed. One of the limits is the speed without damping.
 
-    limit : the other limit, the exact speed as dx -> 0 at fixed beta, under the elastic rule
+    limit_at_fixed_beta : the other limit, the exact speed as dx -> 0 under the elastic release rule
     """
     symbols = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])
-    for ((held, fixed, rule), group), marker in zip(lines, MARKERS, strict=False):
+    for ((fixed_name, fixed_value, rule), group), marker in zip(lines, MARKERS, strict=False):
         line = group[group["role"] == "theory"].sort_values("dx")
-        label = rf"fixed ${symbols[held]} = {fixed:g}$, {rule}"
+        label = rf"fixed ${symbols[fixed_name]} = {fixed_value:g}$, {rule}"
         look: Look = {"color": GREY, "linewidth": 0.8}
         axes.plot(line["dx"], line["speed"], **look)
         _mark_runs(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=label, **look)
     undamped = rows["undamped"].max()
-    _mark_speed(axes, limit, r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
+    _mark_speed(axes, limit_at_fixed_beta, r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
     _mark_speed(axes, undamped, r"$1/\sqrt{1-\tau_0^2}$", "--", "top")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))

@@ -64,32 +64,35 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     map : what a pulse does (column outcome) for each gamma and fracture energy
     """
     study = tables["layer"]
+    # Columns that only other parts use are left out.
     field = study[study["part"] == "field"].dropna(axis="columns", how="all")
+    pulses = drawn_pulses(study[study["part"] == "pulse"])
+    free_pulses = drawn_pulses(study[study["part"] == "free"])
     coupled = study[study["part"] == "coupled"]
     # A grid is named by its number of cells over the height of the layer.
-    coupled = coupled[coupled["cells"] == coupled["cells"].max()]
-    numbers = ["coupling", "side", "sample_position", "pulse_width"]
-    coupled = coupled[["part", "gamma", "tau0", *numbers]]
+    on_finest_grid = coupled["cells"] == coupled["cells"].max()
+    columns = ["part", "gamma", "tau0", "coupling", "side", "sample_position", "pulse_width"]
+    coupled = coupled.loc[on_finest_grid, columns]
     points = tables["layer_map"][["gamma", "fracture_energy", "outcome"]].assign(part="map")
-    pulses = [drawn_pulses(study[study["part"] == part]) for part in ("pulse", "free")]
-    return pd.concat([field, *pulses, coupled, points], ignore_index=True)
+    return pd.concat([field, pulses, free_pulses, coupled, points], ignore_index=True)
 
 
 def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the pulses of one part on their finest grids, with the range over all grids.
 
     A station is a position on the fault at which a pulse is measured. The last one counts. Columns
-    least_QUANTITY and largest_QUANTITY have the range. The column crossings has the sliding time in
-    units of the time that the shear front of the tip needs to come down from the top.
+    least_QUANTITY and largest_QUANTITY have the range. The column crossings has the sliding time
+    divided by the crossing time. This is the time from the tip of a rupture to the shear front that
+    comes down from the top of the layer behind it.
 
     rows : rows of the part, for all grids and stations
     """
-    at_last_station = rows[rows["station"] == rows["station"].max()].sort_values("cells")
-    by_pulse = at_last_station.groupby(PULSE_COLUMNS)
-    finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS)
-    crossing_width = np.sqrt(
-        2.0 * finest["speed"] ** 2 / finest.index.get_level_values("gamma") - 1.0
-    )
+    at_last_station = rows[rows["station"] == rows["station"].max()]
+    by_pulse = at_last_station.sort_values("cells").groupby(PULSE_COLUMNS)
+    # The grid with the most cells is the last one.
+    finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS, drop=False)
+    # A width is a time multiplied by the speed of the tip, so that both ratios are equal.
+    crossing_width = _crossing_width(finest["gamma"], finest["speed"])
     finest["crossings"] = finest["pulse_width"] / crossing_width
     drawn = finest[["part", *QUANTITIES, "cells", "crossings", *THEORY_COLUMNS]]
     least = by_pulse[QUANTITIES].min().add_prefix("least_")
@@ -100,20 +103,26 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw velocity (a), speed, width, slip (b-d), sliding times (e), widths (f) and a map (g)."""
     figure, panels = style.new_panels(PAGE_WIDTH, 5.7, "aaa;bcd;efg", height_ratios=(0.9, 2.3, 2.3))
+    field_axes, *pulse_panels, time_axes, coupled_axes, map_axes = panels
     pulses = table[table["part"] == "pulse"]
-    _draw_field(figure, panels[0], table[table["part"] == "field"])
+    _draw_field(figure, field_axes, table[table["part"] == "field"])
     # The level at which most fracture energies have been run.
     level = pulses["tau0"].mode().iloc[0]
-    _draw_pulses(panels[1:4], pulses[pulses["tau0"] == level])
-    _draw_sliding_times(panels[4], pulses, table[table["part"] == "free"], level)
-    _draw_coupled(panels[5], table[table["part"] == "coupled"])
-    _draw_map(panels[6], table[table["part"] == "map"])
+    _draw_pulses(pulse_panels, pulses[pulses["tau0"] == level])
+    _draw_sliding_times(time_axes, pulses, table[table["part"] == "free"], level)
+    _draw_coupled(coupled_axes, table[table["part"] == "coupled"])
+    _draw_map(map_axes, table[table["part"] == "map"])
     return figure
 
 
-def _crossing_width(gamma: float | pd.Series) -> float | pd.Series:
-    """Return sqrt(2/gamma - 1), the width with which pulses are compared, in layer thicknesses."""
-    return np.sqrt(2.0 / gamma - 1.0)
+def _crossing_width(
+    gamma: float | pd.Series, tip_speed: float | pd.Series = 1.0
+) -> float | pd.Series:
+    """Return the distance behind the tip at which shear waves from the top reach the fault.
+
+    It is in layer thicknesses. By default, the tip runs at the speed 1 of the longitudinal wave.
+    """
+    return np.sqrt(2.0 * tip_speed**2 / gamma - 1.0)
 
 
 def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
@@ -133,47 +142,33 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
     gamma = first["gamma"]
     title = style.conditions(True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"])
     axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {first['fracture_energy']:.2g}$")
-    # The fault moves fastest at the tip, which runs almost at the speed of the longitudinal wave.
-    tip = grid.columns[np.argmax(grid.to_numpy()[0])]
+    # The first row is the fault. It moves fastest at the tip, which runs almost at the speed of the
+    # longitudinal wave.
+    tip = float(grid.iloc[0].idxmax())
     shear_front = [tip, tip - _crossing_width(gamma)]
     axes.plot(shear_front, [1.0, 0.0], "--", color=BLACK, linewidth=0.8)
 
 
 def _gamma_looks(pulses: pd.DataFrame) -> dict[float, Look]:
-    """Return colour and marker for each elasticity ratio."""
-    looks = zip(GAMMA_COLOURS, MARKERS, strict=True)
-    ratios = sorted(pulses["gamma"].unique())
-    return {
-        gamma: {"color": colour, "marker": marker}
-        for gamma, (colour, marker) in zip(ratios, looks, strict=False)
-    }
+    """Return colour and marker for each elasticity ratio gamma."""
+    gammas = sorted(pulses["gamma"].unique())
+    looks = {}
+    for gamma, colour, marker in zip(gammas, GAMMA_COLOURS, MARKERS, strict=False):
+        looks[gamma] = {"color": colour, "marker": marker}
+    return looks
 
 
 def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
-    """Draw speed, width and slip as functions of the fracture energy.
+    """Draw speed, width and slip of pulses as functions of the fracture energy.
 
-    Dotted lines are the pulse in one dimension with the same friction, and dashed lines the paper's
-    formulas.
+    Each quantity is divided by its own unit. There is one colour for each gamma.
     """
     speed_axes, width_axes, slip_axes = panels
     for gamma, look in _gamma_looks(pulses).items():
         rows = pulses[pulses["gamma"] == gamma].sort_values("fracture_energy")
-        # Each quantity is divided by a unit of its own.
-        units = {
-            "speed": 1.0,
-            "pulse_width": _crossing_width(gamma),
-            "pulse_slip": rows["paper_pulse_slip"],
-        }
-        for axes, (quantity, unit) in zip(panels, units.items(), strict=True):
-            value = rows[quantity] / unit
-            range_ends = [rows[f"{end}_{quantity}"] / unit for end in ("least", "largest")]
-            error = [value - range_ends[0], range_ends[1] - value]
-            line = look | {"linewidth": 0.8, "capsize": 1.5, "label": rf"$\gamma = {gamma:.2g}$"}
-            axes.errorbar(rows["fracture_energy"], value, error, **line)
-            in_one_dimension = rows[f"damped_{quantity}"] / unit
-            axes.plot(rows["fracture_energy"], in_one_dimension, ":", color=look["color"])
-            formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
-            axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
+        _draw_quantity(speed_axes, rows, "speed", 1.0, look)
+        _draw_quantity(width_axes, rows, "pulse_width", _crossing_width(gamma), look)
+        _draw_quantity(slip_axes, rows, "pulse_slip", rows["paper_pulse_slip"], look)
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
@@ -191,23 +186,40 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     slip_axes.legend(handles=lines, loc="lower left", fontsize=SMALL_TEXT)
 
 
+def _draw_quantity(
+    axes: Axes, rows: pd.DataFrame, quantity: str, unit: float | pd.Series, look: Look
+) -> None:
+    """Draw a quantity of the pulses at one gamma, divided by a unit, by fracture energy.
+
+    Markers are pulses on their finest grids, with the range over all grids as error bars. The
+    dotted line is the pulse in one dimension with the same friction (prefix damped_), and the
+    dashed line is the paper's formula.
+    """
+    energy, value = rows["fracture_energy"], rows[quantity] / unit
+    least, largest = rows[f"least_{quantity}"] / unit, rows[f"largest_{quantity}"] / unit
+    label = rf"$\gamma = {rows['gamma'].iloc[0]:.2g}$"
+    line = look | {"linewidth": 0.8, "capsize": 1.5, "label": label}
+    axes.errorbar(energy, value, [value - least, largest - value], **line)
+    axes.plot(energy, rows[f"damped_{quantity}"] / unit, ":", color=look["color"])
+    formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
+    axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
+
+
 def _draw_sliding_times(
     axes: Axes, pulses: pd.DataFrame, free_pulses: pd.DataFrame, level: float
 ) -> None:
-    """Draw the sliding time of all pulses in units of one crossing of the layer.
+    """Draw the sliding time of all pulses, divided by the crossing time (column crossings).
 
-    Markers are filled at one level of pre-stress. Crosses are pulses whose top is free to rise.
+    The crossing time is the time from the tip of a rupture to the shear front that comes down from
+    the top of the layer behind it. Crosses are pulses of a layer whose top is free to rise.
+
+    level : the pre-stress at which markers are filled
     """
     for gamma, look in _gamma_looks(pulses).items():
         rows = pulses[pulses["gamma"] == gamma]
-        at_level = rows["tau0"] == level
-        axes.plot(
-            rows["fracture_energy"][at_level], rows["crossings"][at_level], linestyle="none", **look
-        )
-        others = rows[~at_level]
-        axes.plot(
-            others["fracture_energy"], others["crossings"], linestyle="none", **look | OPEN_MARKER
-        )
+        at_level, others = rows[rows["tau0"] == level], rows[rows["tau0"] != level]
+        for drawn, marker_look in ((at_level, look), (others, look | OPEN_MARKER)):
+            axes.plot(drawn["fracture_energy"], drawn["crossings"], linestyle="none", **marker_look)
     axes.plot(free_pulses["fracture_energy"], free_pulses["crossings"], "x", color=BLACK)
     axes.axhline(1.0, color=GREY, linewidth=0.6)
     axes.set(xlabel=r"fracture energy $G_\mathrm{c}/G_0$", ylabel="sliding time / crossing time")
@@ -221,14 +233,17 @@ def _draw_sliding_times(
 
 
 def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
-    """Draw the width of pulses whose strength depends on the normal stress, on both sides."""
-    for colour, (coupling, rows) in zip(
-        COUPLING_COLOURS, coupled.groupby("coupling"), strict=False
-    ):
-        for side, line in ((1.0, "o-"), (-1.0, "o:")):
-            on_side = rows[rows["side"] == side]
-            look: Look = {"color": colour} | (OPEN_MARKER if side < 0.0 else {})
-            axes.plot(on_side["sample_position"].abs(), on_side["pulse_width"], line, **look)
+    """Draw the width of pulses whose strength depends on the normal stress, along their paths.
+
+    There is one colour for each friction coefficient (column coupling). The column side is 1 for
+    pulses on the right, and -1 for those on the left, which have open markers.
+    """
+    groups = coupled.groupby("coupling")
+    for colour, (coupling, rows) in zip(COUPLING_COLOURS, groups, strict=False):
+        right, left = rows[rows["side"] > 0.0], rows[rows["side"] < 0.0]
+        axes.plot(right["sample_position"], right["pulse_width"], "o-", color=colour)
+        distance = left["sample_position"].abs()
+        axes.plot(distance, left["pulse_width"], "o:", color=colour, **OPEN_MARKER)
         axes.plot([], [], color=colour, label=rf"$\mu = {coupling:g}$")
     handles, _ = axes.get_legend_handles_labels()
     handles += [
@@ -243,7 +258,8 @@ def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
     """Mark what the pulse of each point does: whether it is steady, grows, dies, or neither.
 
-    The axes are the fracture energy and the width sqrt(2/gamma - 1).
+    The axes are the fracture energy, and the distance sqrt(2/gamma - 1) at which shear waves from
+    the top of the layer reach the fault.
     """
     for outcome, rows in points.groupby("outcome"):
         look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]

@@ -46,22 +46,24 @@ ROW_OFFSETS = {"elastic": -0.17, "total": 0.17}
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return one row for each claim and combination of choices.
+    """Return one row for each claim and combination of open choices.
 
-    A claim without open choices has one row. The column over has the deviation divided by the
-    tolerance.
+    The column over has the deviation divided by the tolerance. The column choice names the choice
+    on which the verdict depends most, and release and solution are choices of the combination. A
+    claim without open choices has one row.
     """
-    names = ["id", "label", "verdict", "tolerance", "choice"]
+    claim_columns = ["id", "label", "verdict", "tolerance", "choice"]
+    default_choices = {"release": "", "solution": "lattice"}
     rows = []
     for claim in tables["claims"].to_dict("records"):
-        if claim["kind"] not in NUMERIC_KINDS or not claim["tolerance"]:
-            continue
-        fields = {name: claim[name] for name in names}
-        # A combination has the deviation, and by name the choices that differ from the defaults.
-        defaults = {"release": "", "solution": "lattice"}
-        combinations = claim["choices"] or [{"deviation": claim["deviation"]}]
-        rows += [defaults | combination | fields for combination in combinations]
-    columns = [*names, "deviation", "release", "solution"]
+        if claim["kind"] in NUMERIC_KINDS and claim["tolerance"]:
+            of_claim = {name: claim[name] for name in claim_columns}
+            # A combination has its choices by name, and the deviation that they give. A choice that
+            # it leaves out has its default.
+            combinations = claim["choices"] or [{"deviation": claim["deviation"]}]
+            for combination in combinations:
+                rows.append(default_choices | combination | of_claim)
+    columns = [*claim_columns, "deviation", "release", "solution"]
     drawn = pd.DataFrame(rows)[columns].dropna(subset="deviation")
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
 
@@ -93,19 +95,22 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_claim(axes: Axes, claim: pd.DataFrame, position: int) -> None:
-    """Mark the deviations of one claim in a row.
+    """Mark the deviations of one claim, divided by its tolerance (column over), in a row.
 
-    The colour is that of the choice on which the verdict depends most.
+    The colour is that of the choice on which the verdict depends most. Each release rule has its
+    own height in the row, and each solution its own marker.
 
     position : vertical position of the row
     """
     for (choice, solution), rows in claim.groupby(["choice", "solution"]):
+        # A choice without a look of its own is drawn like no choice.
         choice_look = CHOICE_LOOKS.get(str(choice), CHOICE_LOOKS[""])
         look: Look = {"color": choice_look["color"], "linestyle": "none"}
         look |= SOLUTION_MARKERS[str(solution)]
         is_shown = rows["over"] >= MIN_SHOWN_RATIO
         height = position + rows["release"].map(ROW_OFFSETS).fillna(0.0)
         axes.plot(rows["over"].where(is_shown), height, **look)
+    # All smaller ratios are replaced by one upper bound.
     if claim["over"].min() < MIN_SHOWN_RATIO:
         bound = rf"$\leq$ {MIN_SHOWN_RATIO:g}"
         axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=TEXT_OUTLINE)

@@ -104,6 +104,7 @@ def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
         error = np.abs(line["value"] / line["theory"] - 1.0)
         label = QUANTITY_LABELS.get(quantity, "front speed")
         axes.plot(line["dx"], error, marker=marker, color=colour, label=label)
+    # A dotted guide: the error 0.4 dx, which falls with first order.
     style.draw_first_order(axes, rows["dx"], slope=0.4, colour=GREY)
     # All runs are the same scene at several spacings.
     first = rows.iloc[0]

@@ -57,7 +57,7 @@ def _draw_maps(axes: Axes, rows: pd.DataFrame) -> None:
     draw_halves(axes, rows, "regime")
     for regime, half in rows.groupby("regime"):
         rate = half["scaled_rate"].iloc[0]
-        label = rf"{regime}, {RATE_LABEL[:-1]} = {rate:.2f}$"
+        label = rf"{regime}, $\alpha/\sqrt{{\gamma}} = {rate:.2f}$"
         is_upper_half = half["position"].max() > 0.0
         axes.text(0.04, 0.92 if is_upper_half else 0.04, label, transform=axes.transAxes)
 

@@ -27,7 +27,7 @@ LEGEND_TITLE = r"$\tau_0$, $\sigma$, $\ell$, Hurst"
 COLOURS = (style.BLUE, style.GREEN, style.PURPLE, style.YELLOW, style.ORANGE, style.SKY, BLACK)
 ENSEMBLE_MARKERS = (*MARKERS, "X")
 # With the stress held, survival is drawn only if more than this fraction of the pulses has died.
-MIN_DRAWN_DEATHS = 0.1
+MIN_DEAD_FRACTION = 0.1
 # The line of the power law begins at this fraction of the largest distance. It lies above the curve
 # by the second factor.
 GUIDE_START, GUIDE_OFFSET = 0.2, 1.5
@@ -59,26 +59,29 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw the two boundary conditions in two rows of panels.
 
-    Displacement held: (a) survival, (b) death rate. Stress held: (c) survival, (d) velocity.
+    Displacement held: (a) survival, (b) death rate. Stress held: (c) survival, (d) velocity. The
+    survival is the fraction of pulses that are alive, as a function of the distance that they run.
     """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
     survival_axes, rate_axes, walk_axes, velocity_axes = panels
-    at_gamma_1 = table[table["boundary"] == "displacement"]
-    dying = at_gamma_1[(at_gamma_1["part"] == "ensemble") & (at_gamma_1["deaths"] > 0.0)]
-    for ensemble in ensembles(at_gamma_1, dying):
+    held_top = table[table["boundary"] == "displacement"]
+    with_deaths = held_top[(held_top["part"] == "ensemble") & (held_top["deaths"] > 0.0)]
+    for ensemble in ensembles(held_top, with_deaths):
         draw_survival(survival_axes, ensemble)
         draw_rate(rate_axes, ensemble)
-    finish_survival(survival_axes, dying["stop"].max())
-    finish_rates(rate_axes, dying)
-    at_gamma_0 = table[table["boundary"] == "stress"]
-    for ensemble in ensembles(at_gamma_0, at_gamma_0[at_gamma_0["part"] == "ensemble"]):
-        if ensemble.row["deaths"] > MIN_DRAWN_DEATHS * ensemble.row["pulses"]:
+    finish_survival(survival_axes, with_deaths["stop"].max())
+    finish_rates(rate_axes, with_deaths)
+    held_stress = table[table["boundary"] == "stress"]
+    for ensemble in ensembles(held_stress, held_stress[held_stress["part"] == "ensemble"]):
+        dead_fraction = ensemble.row["deaths"] / ensemble.row["pulses"]
+        if dead_fraction > MIN_DEAD_FRACTION:
             draw_survival(walk_axes, ensemble)
+            # The survival that theory predicts is a dashed line.
             curve = ensemble.part("survival")
             look: Look = {"color": ensemble.colour, "linewidth": 0.9}
             walk_axes.plot(curve["distance"], curve["predicted"], "--", **look)
         draw_velocities(velocity_axes, ensemble)
-    finish_walks(walk_axes, at_gamma_0[at_gamma_0["part"] == "long_survival"])
+    finish_walks(walk_axes, held_stress[held_stress["part"] == "long_survival"])
     finish_velocities(velocity_axes)
     return figure
 
@@ -131,16 +134,17 @@ def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
     axes.errorbar(row["barrier_rate"], row["rate"], [[below], [above]], **look)
 
 
-def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
-    """Mark ensembles without a colour, and draw the line on which both rates are equal.
+def finish_rates(axes: Axes, with_deaths: pd.DataFrame) -> None:
+    """Draw the line on which death rate and predicted rate are equal, and set the axes of panel b.
 
     Within the band around the line, they differ by less than a factor of two.
 
-    dying : rows of the ensembles in which a pulse died
+    with_deaths : one row for each ensemble in which a pulse died
     """
-    others = dying.iloc[len(COLOURS) :]
-    axes.plot(others["barrier_rate"], others["rate"], ".", color=GREY, zorder=1.0)
-    ends = np.array([3e-5, max(1e-2, 1.2 * dying["barrier_rate"].max())])
+    # Ensembles for which there is no colour left are small grey points.
+    uncoloured = with_deaths.iloc[len(COLOURS) :]
+    axes.plot(uncoloured["barrier_rate"], uncoloured["rate"], ".", color=GREY, zorder=1.0)
+    ends = np.array([3e-5, max(1e-2, 1.2 * with_deaths["barrier_rate"].max())])
     axes.plot(ends, ends, color=BLACK, linewidth=0.8)
     axes.fill_between(ends, 0.5 * ends, 2.0 * ends, color="0.9", linewidth=0.0, zorder=0.0)
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=(1e-5, 2.0 * ends[1]))
@@ -153,8 +157,9 @@ def finish_rates(axes: Axes, dying: pd.DataFrame) -> None:
 def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
     """Draw the survival over a long distance and a power law, and set the axes of panel c.
 
-    This survival is not simulated. It follows from the pre-stress alone, because a pulse dies where
-    the integral of the pre-stress has fallen to 0. The power law has the exponent of a random walk.
+    The survival is the fraction of pulses that are alive. Over a long distance it is not simulated:
+    it follows from the pre-stress alone, because a pulse dies where the integral of the pre-stress
+    has fallen to 0. The power law has the exponent of a random walk.
     """
     axes.plot(
         long_survival["distance"],
@@ -165,7 +170,7 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
     start = GUIDE_START * long_survival["distance"].max()
     tail = long_survival[long_survival["distance"] > start]
     first = tail.iloc[0]
-    # A power law of the distance that is higher than the survival by a constant factor.
+    # At the first point, the power law is GUIDE_OFFSET times the survival.
     power_law = GUIDE_OFFSET * first["survival"] * np.sqrt(first["distance"] / tail["distance"])
     axes.plot(tail["distance"], power_law, ":", color=BLACK, label="power law $x^{-1/2}$")
     axes.set(xscale="log", yscale="log", xlim=(4.0, None), ylim=(0.05, 1.1))

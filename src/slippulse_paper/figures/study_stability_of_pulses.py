@@ -32,19 +32,20 @@ MIN_DRAWN_VELOCITY = 0.03
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
-    exact, lattice : final slip by distance x from the step, under a displacement boundary
+    exact, lattice : final slip as a function of the distance x from the step, under a displacement
+        boundary
     velocity : largest slip velocity at each sampled time, under a stress boundary
     """
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
-    across = data["pulses_across_a_step"]
-    for number in range(across.sizes["point"]):
-        parts.append(lattice_slip(point(across, number), exact).assign(role="lattice"))
-    under_stress = data["regimes_beyond"]
+    held_top = data["pulses_across_a_step"]
+    for number in range(held_top.sizes["point"]):
+        parts.append(lattice_slip(point(held_top, number), exact).assign(role="lattice"))
+    held_stress = data["regimes_beyond"]
     # The runs with the lowest level on the left have the narrowest pulse.
-    left_levels = under_stress["left"].values
+    left_levels = held_stress["left"].values
     for index in np.flatnonzero(left_levels == left_levels.min()):
-        velocities = largest_velocities(point(under_stress, int(index)))
+        velocities = largest_velocities(point(held_stress, int(index)))
         parts.append(velocities.assign(role="velocity"))
     return pd.concat(parts, ignore_index=True)
 
@@ -65,8 +66,13 @@ def lattice_slip(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
 
 
 def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
-    """Return the largest slip velocity on the right of x = 0 at each sampled time."""
+    """Return the largest slip velocity of the right pulse at each sampled time.
+
+    The columns before and level have the pre-stress before and beyond the step, and the column step
+    has its position.
+    """
     step_position, level = prestress_from(run.attrs).steps[-1]
+    # The slice leaves out the position 0.
     velocity_on_right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
     largest = velocity_on_right.max("sample_position").values
     rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
@@ -74,22 +80,26 @@ def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) slip across the step, (b) its deviation from the new steady slip, (c) velocity."""
+    """Draw (a) slip across the step, (b) its deviation from the new steady slip, (c) velocity.
+
+    Lines are exact, and markers are some points of the lattice. In panel a, a tick on each line
+    marks the end of the memory (see `_draw_slip`).
+    """
     figure, (slip_axes, deviation_axes, velocity_axes) = style.new_panels(PAGE_WIDTH, 3.2, "abc")
     slip = table[table["role"].isin(["exact", "lattice"])].sort_values("x")
     for level, rows in slip.groupby("level"):
         colour = style.colour("tau_0", level)
-        exact, lattice = (rows[rows["role"] == role] for role in ("exact", "lattice"))
-        marked = lattice.iloc[::POINTS_PER_MARKER]
+        exact = rows[rows["role"] == "exact"]
+        marked = rows[rows["role"] == "lattice"].iloc[::POINTS_PER_MARKER]
         _draw_slip(slip_axes, exact, marked, colour, rf"$\tau_0 = {level:g}$ beyond")
         _draw_deviation(deviation_axes, exact, marked, colour)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
-    levels, _ = slip_axes.get_legend_handles_labels()
+    handles_of_levels, _ = slip_axes.get_legend_handles_labels()
     lattice_label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
     handles = [
-        *levels,
+        *handles_of_levels,
         entry("exact", color=GREY),
         entry(lattice_label, color=GREY, marker="o", **OPEN_MARKER),
         entry("finite memory", color=GREY, marker="|", markersize=7.0),
@@ -103,7 +113,7 @@ def draw(table: pd.DataFrame) -> Figure:
 def _draw_slip(
     axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray, label: str
 ) -> None:
-    """Draw the exact slip, the marked points of the lattice, and the end of the memory.
+    """Draw the exact slip, some points of the lattice as markers, and the end of the memory.
 
     A pulse remembers the old level only up to a finite distance beyond the step, its memory. From
     there on, its slip is exactly that of the steady pulse.
@@ -117,15 +127,17 @@ def _draw_slip(
 def _draw_deviation(
     axes: Axes, exact: pd.DataFrame, marked: pd.DataFrame, colour: np.ndarray
 ) -> None:
-    """Draw the relative deviation from the new steady slip, by distance in units of the memory.
+    """Draw the relative deviation of slip from the new steady slip, as a function of distance.
 
-    The memory is explained in `_draw_slip`.
+    The distance beyond the step is in units of the memory, the distance over which a pulse
+    remembers the old level. The exact slip is drawn as a line, and the lattice as markers.
     """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
-    # Beyond the memory the exact deviation is 0. It is drawn up to the first such point.
-    is_drawn = (exact["x"] <= memory) | (exact["x"].shift() <= memory)
+    # Beyond the memory the exact deviation is 0. The line ends at the first point beyond it.
+    count_within_memory = int((exact["x"] <= memory).sum())
+    drawn_exact = exact.iloc[: count_within_memory + 1]
     look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
-    for rows, line in ((exact[is_drawn], "-"), (marked, "o")):
+    for rows, line in ((drawn_exact, "-"), (marked, "o")):
         beyond_step = rows[rows["x"] > 0.0]
         deviation = np.abs(beyond_step["slip"] / steady - 1.0)
         # A deviation of exactly 0 is drawn at the rounding error.
@@ -134,7 +146,10 @@ def _draw_deviation(
 
 
 def _finish_deviation(axes: Axes) -> None:
-    """Mark the end of the memory and the rounding error, and set the axes."""
+    """Mark the end of the memory and the size of the rounding error, and set the axes.
+
+    The memory W_p/(v - 1) is the distance over which a pulse remembers the old level.
+    """
     axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="--")
     axes.axhspan(0.1 * ROUNDING_ERROR, 2.0 * ROUNDING_ERROR, color="0.9", linewidth=0.0)
     axes.text(0.04, 0.45 * ROUNDING_ERROR, "rounding", va="center")
@@ -149,21 +164,22 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     A line has the colour of growth, decay or neither, and its level is written at its end.
     """
     rows = rows[rows["largest_velocity"] > 0.0]
+    # A pulse decays at a negative level, and grows at a positive one.
     colours = {-1.0: style.GREEN, 0.0: style.YELLOW, 1.0: style.PURPLE}
     look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center"}
     for level, line in rows.groupby("level"):
         colour = colours[float(np.sign(level))]
         time, velocity = line["time"], line["largest_velocity"]
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        label_time, label_velocity = time.iloc[-1], velocity.iloc[-1]
-        if label_velocity <= MIN_DRAWN_VELOCITY:
-            # The label stands where the line leaves the panel. Velocities fall with time, so they
-            # ascend in reversed order.
-            ascending_velocity = np.log(velocity.iloc[::-1])
-            label_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending_velocity, time.iloc[::-1])
-            label_velocity = 1.15 * MIN_DRAWN_VELOCITY
-        place = (label_time, label_velocity)
-        axes.annotate(setting(level), place, color=BLACK, fontsize=SMALL_TEXT, **look)
+        label_position = (time.iloc[-1], velocity.iloc[-1])
+        if velocity.iloc[-1] <= MIN_DRAWN_VELOCITY:
+            # The label stands where the line leaves the panel at its bottom. Interpolation needs
+            # ascending velocities. Here they fall with time, so their order is reversed.
+            backwards = line.iloc[::-1]
+            log_velocity = np.log(backwards["largest_velocity"])
+            exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), log_velocity, backwards["time"])
+            label_position = (exit_time, 1.15 * MIN_DRAWN_VELOCITY)
+        axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set_xlim(None, 1.28 * rows["time"].max())

@@ -59,18 +59,19 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     """
     (runs,) = tables.values()
     has_equal_levels = (runs["left"] == runs["right"]).all()
+    # With different levels, tau_0 is the same number for all runs, so that it does not vary.
     runs = runs.assign(tau_0=runs["left"] if has_equal_levels else 0.0)
-    varying = varying_columns(runs)
-    if not varying:
-        varying = ["profile" if "profile" in runs else "left"]
-    axis, *other_columns = varying
+    # If nothing varies, as in a single run, the axis shows the profile or the level on the left.
+    axis_of_equal_runs = "profile" if "profile" in runs else "left"
+    axis, *other_columns = varying_columns(runs) or [axis_of_equal_runs]
     parts = []
     for _, run in runs.iterrows():
         series = ", ".join(f"{_name(column)} = {_text(run[column])}" for column in other_columns)
         numbers = main_numbers(run).assign(run_flags=run["run_flags"])
         parts.append(numbers.assign(axis=axis, x=run[axis], series=series))
     rows = pd.concat(parts).set_index("quantity")
-    # If two quantities are equal in every run, only the first one is kept.
+    # If two quantities are equal in every run, only the first one is kept. To compare them, the
+    # values of a quantity in all runs become one tuple.
     values_of_all_runs = rows.groupby("quantity", sort=False)["value"].agg(tuple)
     kept = values_of_all_runs.drop_duplicates().index
     levels = ["tau_0"] if has_equal_levels else ["left", "right"]
@@ -94,16 +95,14 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
 def varying_columns(runs: pd.DataFrame) -> list[str]:
     """Return the columns that vary: numbers before texts, and then those with most values first."""
     columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
-    # If two columns are equal in every run, only the first one is kept.
-    different = runs[[*columns]].T.drop_duplicates().index
-    varying = [column for column in different if runs[column].nunique() > 1]
-
-    def rank(column: str) -> tuple[bool, int]:
-        """Return the key of a column for the sorting."""
-        is_number = runs[column].dtype.kind == "f"
-        return not is_number, -runs[column].nunique()
-
-    return sorted(varying, key=rank)
+    # If two columns are equal in every run, only the first one is kept. In the transposed table,
+    # each column is a row.
+    different = runs[list(columns)].T.drop_duplicates().index
+    counts = runs[different].nunique()
+    varying = counts[counts > 1].sort_values(ascending=False, kind="stable").index
+    numbers = [column for column in varying if runs[column].dtype.kind == "f"]
+    texts = [column for column in varying if column not in numbers]
+    return numbers + texts
 
 
 def _name(column: str) -> str:

@@ -185,13 +185,14 @@ class RecordedFiles:
         """
         for path in self.unreadable:
             yield str(_recorded_folder(path) / path.stem), "its record cannot be read"
+        # The recorded state of each file.
         states = self.states()
         yield from _changed_files(states)
         for job in self._jobs():
             replaced_inputs = job.replaced_inputs(states)
             if replaced_inputs:
                 for output in job.outputs:
-                    yield output, f"made from another {replaced_inputs[0]}"
+                    yield output, f"made from an earlier version of {replaced_inputs[0]}"
 
     def older_than_inputs(self) -> set[str]:
         """Return the files that were made from an older version of one of their inputs.
@@ -236,7 +237,7 @@ def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]
         unchanged = threads.map(_is_unchanged_or_missing, states, states.values())
     for name, is_unchanged_file in zip(states, unchanged, strict=True):
         if not is_unchanged_file:
-            yield name, "not what its job wrote"
+            yield name, "changed since its job wrote it"
         elif name not in snakemake_files and Path(name).is_file():
             yield name, "Snakemake's own record of it (in .snakemake) is lost"
 
@@ -264,13 +265,14 @@ def _files_recorded_by_snakemake() -> dict[str, Path]:
 def made_without_step(paths: Iterable[str]) -> set[str]:
     """Return those files that Snakemake made by a rule of the user.
 
-    Such a rule runs no step of this project, and so its jobs have no record in `FOLDER`.
+    Such a rule runs no step of this project, and so its jobs have no record in `FOLDER`. The code
+    of the rule is in Snakemake's own record of the file.
     """
     records, user_files = _files_recorded_by_snakemake(), set()
     for name in {*paths} & {*records}:
         with suppress(OSError, ValueError, TypeError, AttributeError):
-            code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
-            if code and STEP_CALL not in code:
+            rule_code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
+            if rule_code and STEP_CALL not in rule_code:
                 user_files.add(name)
     return user_files
 
@@ -299,7 +301,7 @@ def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, 
         records[path] = record
         if record.outputs[Path(path).name].sha256 != states[path].sha256:
             remedy = "delete it and run again, or run `make replicate`, which makes it again"
-            raise ChangedFile(f"{path}: not what its job wrote; {remedy}")
+            raise ChangedFile(f"{path}: changed since its job wrote it; {remedy}")
     return states, records
 
 
@@ -313,11 +315,11 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
     folder = Path(path).parent / FOLDER
-    records = _records_in(str(folder), _time_of(folder))
+    records = _records_in(str(folder), _modification_time(folder))
     return records.get(Path(path).name)
 
 
-def _time_of(folder: Path) -> int:
+def _modification_time(folder: Path) -> int:
     """Return the time at which a folder was modified, in ns, or 0 if there is no folder."""
     try:
         return folder.stat().st_mtime_ns

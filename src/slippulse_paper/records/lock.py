@@ -35,7 +35,11 @@ def take(path: str | Path, wait: bool = False) -> TextIO | None:
 
 
 def main(arguments: list[str]) -> int:
-    """Run the module as a command, and return its exit code."""
+    """Run the module as a command, and return its exit code.
+
+    ``arguments`` are the path of the lock, and a command that runs as soon as the lock is free.
+    Without a command, the exit code is 1 if another process holds the lock, and otherwise 0.
+    """
     path, *command = arguments
     lock = take(path)
     if not command:

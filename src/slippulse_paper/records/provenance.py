@@ -134,6 +134,7 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
     """
     entries = []
     for path in sorted([Path(file).relative_to(base) for file in files], key=str):
+        # The comment on its folder, or else the title of its figure.
         folder_or_file = path.parts[0]
         comment = COMMENTS.get(folder_or_file, comments.get(path.stem, "result"))
         if folder_or_file in COMPARISON_ADVICE:
@@ -141,10 +142,9 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
-    specification = "https://codecheck.org.uk/spec/config/1.0/"
     summary = "make compare AGAINST=FOLDER shows figures, verdicts and tables beside another run"
     content = {
-        "version": specification,
+        "version": "https://codecheck.org.uk/spec/config/1.0/",
         "paper": paper,
         "manifest": entries,
         "summary": summary,

@@ -73,18 +73,18 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
         altered=altered,
         rules_altered=any(change["key"].startswith("claims.") for change in altered),
         signs=SIGNS,
-        tables_behind=partial(tables_behind, tables=sorted(tables)),
+        tables_behind=partial(tables_of_claim, tables=sorted(tables)),
         command=command,
         bar_of=bar_of,
         figure_title=figure_title,
     )
 
 
-def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
+def tables_of_claim(source: str, tables: Sequence[str]) -> dict[str, dict[str, str]]:
     """Return the paths of the tables by which a claim is judged.
 
-    The result maps the name of a simulation or study to its tables, and the kind of a table (see
-    TABLE_KINDS) to its path.
+    The keys are the names of simulations and studies, and then kinds of tables, as in
+    {"front_speed": {"measured": "measurements/front_speed.csv"}}.
 
     source : the text in which the claim names its simulations and studies
     tables : paths of all tables
@@ -96,14 +96,15 @@ def tables_behind(source: str, tables: Sequence[str]) -> dict[str, dict[str, str
         paths.setdefault(path.stem, {})[table_kind] = path.as_posix()
     if source.startswith("every simulation"):
         return paths
-    names = dict.fromkeys(re.findall(r"\w+", source))
-    return {name: paths[name] for name in names if name in paths}
+    # A word of the source that is not a name has no tables.
+    words = dict.fromkeys(re.findall(r"\w+", source))
+    return {word: paths[word] for word in words if word in paths}
 
 
 def command(tables: Mapping[str, Mapping[str, str]]) -> str:
     """Return the command that regenerates some tables.
 
-    tables : the result of `tables_behind`; empty for a claim that only tests check
+    tables : the result of `tables_of_claim`; empty for a claim that only tests check
     """
     if not tables:
         return "make test"

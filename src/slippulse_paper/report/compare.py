@@ -28,7 +28,7 @@ from .compared_numbers import (
     read_runs,
     with_uncertainties,
 )
-from .joined_runs import JoinedRuns, describe_run, join_runs, varying_parameters
+from .joined_runs import describe_run, join_runs, varying_parameters
 
 MAX_SHOWN_LINES = 10
 # The files that are compared beside the tables, and the line about a difference in each of them.
@@ -114,11 +114,11 @@ def compare(new: Path, old: Path) -> Comparison:
     new_tables, old_tables = _table_names(new), _table_names(old)
     for name in sorted(new_tables ^ old_tables):
         result.other_differences.append(f"{name}: in one folder only")
-    # In each folder, the files that are older than something that they depend on.
-    older_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
+    # A file that is older than its inputs does not describe the other results of its folder.
+    outdated_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
     for name in CHANGE_LINES:
         result.older[name] = [
-            folder for folder, files in older_files.items() if str(folder / name) in files
+            folder for folder in (new, old) if str(folder / name) in outdated_files[folder]
         ]
         _compare_contents(result, new, old, name)
     numbers = [_compare_tables(result, new, old, name) for name in sorted(new_tables & old_tables)]
@@ -137,7 +137,9 @@ def _table_names(results: Path) -> set[str]:
 
 
 def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> None:
-    """Record how the configurations or the verdicts of both folders differ.
+    """Record in the result how the configurations or the verdicts of both folders differ.
+
+    They are not compared if a file is missing or older than other results.
 
     name : "provenance.json" for the configurations, "claims.json" for the verdicts
     """
@@ -172,22 +174,32 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
 
     Numbers of runs that are in both folders are judged. Those of altered runs (see `TableRuns`) are
     only listed.
+
+    result : the comparison in which the differences are recorded
+    name : file name of the table
     """
     new_table = read_runs(new / "measurements" / name)
     old_table = read_runs(old / "measurements" / name)
     parameters = varying_parameters(new_table, old_table)
+    # Find the runs that are in both folders, and the other runs.
     joined = join_runs(new_table, old_table)
-    only_new = _describe_rows(new_table, joined.only_new, parameters)
-    only_old = _describe_rows(old_table, joined.only_old, parameters)
-    runs = _table_runs(name, joined, only_new, only_old)
+    runs = TableRuns(
+        table=Path(name).stem,
+        same_count=len(joined.same_runs),
+        altered_count=len(joined.altered_runs),
+        altered_parameters=joined.altered_parameters,
+        only_new=_describe_rows(new_table, joined.only_new, parameters),
+        only_old=_describe_rows(old_table, joined.only_old, parameters),
+    )
     result.runs.append(runs)
     differences = _differences_of_runs(runs) + _differences_of_columns(new_table, old_table)
-    # Grid studies give the uncertainties of the numbers.
+    # Files of the grid studies, which give the uncertainties of the numbers.
     new_study, old_study = new / "uncertainties" / name, old / "uncertainties" / name
     if new_study.exists() != old_study.exists():
         differences.append("uncertainties in one folder only")
     result.other_differences += [f"{name}: {difference}" for difference in differences]
 
+    # Compare numbers and texts.
     columns = compared_columns(new_table, old_table)
     new_runs = with_uncertainties(new_table, columns.numbers, new_study)
     old_runs = with_uncertainties(old_table, columns.numbers, old_study)
@@ -204,24 +216,6 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
     result.disagreements += [f"{name}: {disagreement}" for disagreement in disagreements]
     numbers = pd.concat([compared, altered])
     return numbers.assign(table=runs.table)[["table", *numbers.columns]]
-
-
-def _table_runs(
-    name: str, joined: JoinedRuns, only_new: list[str], only_old: list[str]
-) -> TableRuns:
-    """Return how the runs of a table are joined.
-
-    name : file name of the table
-    only_new, only_old : descriptions of the runs that are in one folder only
-    """
-    return TableRuns(
-        table=Path(name).stem,
-        same_count=len(joined.same_runs),
-        altered_count=len(joined.altered_runs),
-        altered_parameters=joined.altered_parameters,
-        only_new=only_new,
-        only_old=only_old,
-    )
 
 
 def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str]) -> list[str]:

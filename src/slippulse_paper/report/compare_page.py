@@ -144,17 +144,18 @@ def differing_numbers(numbers: pd.DataFrame) -> pd.DataFrame:
     The difference is divided by the allowed difference. It counts as infinite if only one of the
     two numbers is known. Numbers without an uncertainty come last.
     """
+    # Numbers of the other outcome agree within their uncertainties, even if they are not equal.
     may_differ = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
     differing = numbers[may_differ & (numbers["new"] != numbers["old"])]
     has_uncertainty = differing[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
     difference = (differing["new"] - differing["old"]).abs()
     # The tiny lower bound avoids a division by 0.
     relative = difference / differing["allowed"].clip(lower=1e-300)
-    ranks = pd.DataFrame(
+    sort_keys = pd.DataFrame(
         {"has_uncertainty": has_uncertainty, "relative": relative.fillna(float("inf"))}
     )
-    ranks = ranks.sort_values(["has_uncertainty", "relative"], ascending=False, kind="stable")
-    return differing.loc[ranks.index]
+    in_order = sort_keys.sort_values([*sort_keys.columns], ascending=False, kind="stable")
+    return differing.loc[in_order.index]
 
 
 def figure_names(new: Path, old: Path) -> list[str]:

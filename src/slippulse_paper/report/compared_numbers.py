@@ -89,6 +89,7 @@ def differing_texts(new: MeasuredRuns, old: MeasuredRuns, columns: list[str]) ->
     new_texts = new.table[columns].astype(object).fillna("")
     old_texts = old.table[columns].astype(object).fillna("")
     is_same_lattice = _is_same_lattice(new, old)
+    # The tables have the paired runs at equal positions. The index of the new one is reported.
     for position, point in enumerate(new_texts.index):
         if not is_same_lattice[position]:
             continue
@@ -104,28 +105,30 @@ def compare_numbers(
 ) -> pd.DataFrame:
     """Compare the numbers of runs that are the same in both folders.
 
-    The result has one row for each number of each run, with its outcome. If only one of the two
-    runs has a number, it counts as different on equal lattices, and is left out otherwise.
+    The result has one row for each number of each run, with its outcome: the numbers agree, or they
+    differ, or it is unknown because different lattices gave them and they have no uncertainty. If
+    only one of the two runs has a number, it counts as different on equal lattices, and is left out
+    otherwise.
 
     parameters : columns that describe a run
     """
     numbers = _list_numbers(new, old, parameters)
+    # A run has one row for each of its numbers.
     is_same_lattice = np.repeat(_is_same_lattice(new, old), len(new.numbers.columns))
     has_uncertainty = numbers[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
     # Equal lattices should give equal numbers, even if no study gives their uncertainty.
-    is_exact = is_same_lattice & ~has_uncertainty
-    size = numbers["new"].abs()
-    tolerance = EQUAL_LATTICE_TOLERANCE * size.clip(lower=1.0)
-    numbers["allowed"] = numbers["allowed"].mask(is_exact, tolerance)
+    should_be_equal = is_same_lattice & ~has_uncertainty
+    tolerance = EQUAL_LATTICE_TOLERANCE * numbers["new"].abs().clip(lower=1.0)
+    numbers["allowed"] = numbers["allowed"].mask(should_be_equal, tolerance)
 
-    is_within = (numbers["new"] - numbers["old"]).abs() <= numbers["allowed"]
+    agrees = (numbers["new"] - numbers["old"]).abs() <= numbers["allowed"]
+    is_unknown = ~agrees & ~is_same_lattice & ~has_uncertainty
     numbers["outcome"] = DIFFERS
-    numbers.loc[~has_uncertainty & ~is_same_lattice, "outcome"] = UNKNOWN
-    numbers.loc[is_within, "outcome"] = AGREES
+    numbers.loc[agrees, "outcome"] = AGREES
+    numbers.loc[is_unknown, "outcome"] = UNKNOWN
 
-    is_known = numbers[["new", "old"]].notna()
-    is_known_twice, is_known_once = is_known.all(axis=1), is_known.any(axis=1)
-    return numbers[is_known_twice | (is_known_once & is_same_lattice)]
+    value_count = numbers[["new", "old"]].notna().sum(axis=1)
+    return numbers[(value_count == 2) | ((value_count == 1) & is_same_lattice)]
 
 
 def list_altered_numbers(
@@ -194,6 +197,7 @@ def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
     It is NaN if the study does not have the number, or has another value for it.
 
     path : table of the grid study, which may not exist
+    numbers : table with one row for each run (point) and one column for each quantity
     """
     if not path.exists():
         return numbers * np.nan

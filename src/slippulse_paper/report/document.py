@@ -10,7 +10,6 @@ import tempfile
 from base64 import b64encode
 from collections.abc import Sequence
 from functools import partial
-from itertools import count
 from pathlib import Path
 
 import matplotlib
@@ -44,9 +43,11 @@ def write_html(text: str, manuscript: Path, output: str | Path) -> None:
         template.write_text(page("report.html"), encoding="utf-8")
         options = ["--mathml", "--default-image-extension=png", "--toc", "--toc-depth=2"]
         html = _pandoc(text, manuscript, template, "html5", options)
-    head, opening, body = html.partition('<main id="content">')
+    # The title and the contents before the main part stay as they are.
+    head, opening_tag, body = html.partition('<main id="content">')
     body = _make_scrollable(_lower_headings(body))
-    write_text(head + opening + HTML_FIGURE.sub(_embedded_figure, body), output)
+    body = HTML_FIGURE.sub(_figure_with_picture, body)
+    write_text(head + opening_tag + body, output)
 
 
 def _lower_headings(html: str) -> str:
@@ -60,21 +61,21 @@ def _make_scrollable(html: str) -> str:
     They get a tab index, so that the keyboard can scroll them, too.
     """
     html = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', html)
-    numbers = count(1)
-
-    def open_region(table: re.Match) -> str:
-        """Return the tag of a table inside the beginning of a region that scrolls."""
-        label = f"Table {next(numbers)}"
-        return f'<div class="scroll" tabindex="0" role="region" aria-label="{label}">{table[0]}'
-
-    html = re.sub("<table", open_region, html)
+    # Put each table into a region that scrolls, with a number as its label.
+    before_tables, *tables = html.split("<table")
+    html = before_tables
+    for number, table in enumerate(tables, start=1):
+        label = f"Table {number}"
+        html += f'<div class="scroll" tabindex="0" role="region" aria-label="{label}"><table{table}'
     return html.replace("</table>", "</table></div>")
 
 
-def _embedded_figure(figure: re.Match) -> str:
-    """Return a figure of `HTML_FIGURE` with its picture inside the page, and with its size.
+def _figure_with_picture(figure: re.Match) -> str:
+    """Return the HTML of a figure that contains its picture and the size of the picture.
 
     A click on it opens the picture file.
+
+    figure : match of `HTML_FIGURE`, the HTML of a figure with a link to the picture file
     """
     content = b64encode(Path(figure["path"]).read_bytes()).decode()
     with Image.open(figure["path"]) as picture:
@@ -94,13 +95,14 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", "typst", options)
     alternatives = dict(ALTERNATIVE_TEXT.findall(text))
 
-    def with_alternative_text(image: re.Match) -> str:
-        """Return the beginning of a call of image() in Typst, with the alternative text."""
+    def add_alternative_text(image: re.Match) -> str:
+        """Add the alternative text to image("PATH", the beginning of a call in Typst."""
         alternative = alternatives[Path(image[1]).stem]
         # JSON and Typst write a string in the same way.
         return f"{image[0]}, alt: {json.dumps(alternative, ensure_ascii=False)}"
 
-    source = re.sub(r'image\("([^"]+)"', with_alternative_text, source)
+    source = re.sub(r'image\("([^"]+)"', add_alternative_text, source)
+    # The declared types of Typst do not allow these options together with a source in bytes.
     compiled = partial(
         typst.compile, ignore_system_fonts=True, font_paths=[FONT_FOLDER], timestamp=TIMESTAMP
     )

@@ -56,20 +56,21 @@ def front_law(law: pd.DataFrame) -> dict:
     The front law relates the pre-stress tau, the damping ratio b and the front speed v. The result
     has one grid of ln(tau/(1 - tau)) for each release rule. Row i of a grid belongs to the damping
     ratio b = scale sinh(i step), and column j to the speed ln(v - 1) = first + j step. The entries
-    "ratio" and "excess" of the result have the constants of rows and columns.
+    "ratio" (of rows) and "excess" (of columns) have these constants.
 
     law : the table of the study explorer_law
     """
     # The browser does not compute this law itself, because that needs the Wiener-Hopf method.
-    ratios, excesses = law["ratio_arsinh"].unique(), law["excess_log"].unique()
-    last_ratio = float(ratios[-1])
-    first_excess, last_excess = float(excesses[0]), float(excesses[-1])
-    scale = float(law["damping_ratio"].max() / np.sinh(last_ratio))
+    # Values of arsinh(b/scale) for the rows, from 0, and of ln(v - 1) for the columns.
+    row_values, column_values = law["ratio_arsinh"].unique(), law["excess_log"].unique()
+    last_row = float(row_values[-1])
+    first_column, last_column = float(column_values[0]), float(column_values[-1])
+    scale = float(law["damping_ratio"].max() / np.sinh(last_row))
     grids: dict = {
-        "ratio": {"scale": round(scale, 6), "step": last_ratio / (len(ratios) - 1)},
+        "ratio": {"scale": round(scale, 6), "step": last_row / (len(row_values) - 1)},
         "excess": {
-            "first": first_excess,
-            "step": (last_excess - first_excess) / (len(excesses) - 1),
+            "first": first_column,
+            "step": (last_column - first_column) / (len(column_values) - 1),
         },
     }
     for release, rows in law.groupby("release", sort=False):
@@ -102,7 +103,10 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
 
 
 def _is_plain(run: Mapping) -> bool:
-    """Return True if a run has Coulomb friction and a Gaussian on equal levels."""
+    """Return True if a run has Coulomb friction and a Gaussian on equal levels.
+
+    A run with a table of pre-stress (points) has no levels.
+    """
     if json.loads(run["steps_and_bumps"]).get("points"):
         return False
     plain = Prestress(run["left"], run["left"], run["width"])

@@ -42,29 +42,30 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     provenance = _read_json(results / "provenance.json")
     ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
     names = _names_in_texts(provenance["config"], ledger, read_errata(texts["errata"]))
+    # This function evaluates the expressions in a text.
     filled = partial(fill, names=names)
     summary = read_text(texts["summary"])
     rows = statement_rows(summary, ledger, filled)
-    shown = {key: filled(summary[key]) for key in ("question", "accuracy")}
-    shown["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
-    words = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
+    paragraphs = {key: filled(summary[key]) for key in ("question", "accuracy")}
+    paragraphs["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
+    glossary = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
     captions = read_captions(texts["captions"], filled)
     figure_names = chain.from_iterable(galleries.values())
-    figures = {name: _caption_of(name, captions) for name in figure_names}
-    # All texts in Markdown are converted to HTML by one call.
-    markdown = [*shown.values(), *chain.from_iterable(words)]
+    caption_by_figure = {name: _caption_of(name, captions) for name in figure_names}
+    # Collect all texts in Markdown, because one call converts all of them to HTML.
+    markdown = [*paragraphs.values(), *chain.from_iterable(glossary)]
     for row in rows:
         markdown += [row.statement, row.number]
-    for caption in figures.values():
+    for caption in caption_by_figure.values():
         markdown += [caption.finding, caption.caption]
     return page(
         "index.html",
         altered=provenance["overlay"],
-        texts=shown,
+        texts=paragraphs,
         rows=rows,
-        words=words,
-        figures=figures,
-        sizes={name: _shown_size(results / f"figures/{name}.png") for name in figures},
+        words=glossary,
+        figures=caption_by_figure,
+        sizes={name: _shown_size(results / f"figures/{name}.png") for name in caption_by_figure},
         galleries=galleries,
         scenes=scenes,
         exists=lambda path: (results / path).exists(),

@@ -51,7 +51,8 @@ class JoinedRuns:
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     """Join the runs that are the same, and then runs that differ only in altered parameters.
 
-    Of the same runs, those on equal lattices are joined first.
+    Of the same runs, those on equal lattices are joined first. A parameter is altered if it has one
+    value in all remaining new runs, and another value in all remaining old runs.
     """
     parameters = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS])
     lattice = columns_in_both(new, old, LATTICE_COLUMNS)
@@ -64,7 +65,8 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     unpaired_new = unpaired_new.drop(on_other_lattices["new"])
     unpaired_old = unpaired_old.drop(on_other_lattices["old"])
 
-    # A parameter has changed if none of its values occurs in both tables.
+    # Look for altered parameters among the remaining runs. A parameter has changed if none of its
+    # values occurs in both tables.
     is_kept = {name: unpaired_new[name].isin(unpaired_old[name]).any() for name in parameters}
     changed = [name for name in parameters if not is_kept[name]]
     altered_parameters = [name for name in changed if name not in DERIVED_COLUMNS]
@@ -114,7 +116,7 @@ def pair_rows(new: pd.DataFrame, old: pd.DataFrame, columns: list[str]) -> pd.Da
 
 
 def _row_keys(table: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
-    """Return some columns as text, and for each row the number of equal rows above it.
+    """Return some columns as text, and for each row the number of equal rows above it (occurrence).
 
     Together they identify a row.
     """
@@ -146,7 +148,11 @@ def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
 
 
 def varying_parameters(new: pd.DataFrame, old: pd.DataFrame) -> list[str]:
-    """Return the parameters that have several values in two tables and can describe a run."""
+    """Return the parameters that describe a run of two tables.
+
+    These are the parameters that have several values, without those that follow from others. If no
+    parameter varies, they are the first few parameters.
+    """
     names = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS, "dx"])
     value_counts = pd.concat([new[names], old[names]]).nunique(dropna=False)
     varying = [name for name in names if value_counts[name] > 1]

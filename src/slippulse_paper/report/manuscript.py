@@ -80,12 +80,13 @@ class Gallery:
         names_by_document = {name: FIGURE_CALL.findall(text) for name, text in texts.items()}
         shown = {*chain.from_iterable(names_by_document.values())}
         self.further_names = [name for name in inputs.figures if name not in shown]
-        *_, last_document = texts
+        last_document = [*texts][-1]
         names_by_document[last_document] += self.further_names
         self.numbers: dict[str, FigureNumber] = {}
         for letter, (document, names) in zip(
             NUMBER_LETTERS, names_by_document.items(), strict=True
         ):
+            # A text may show figures that were not drawn in this run. They get no number.
             drawn = [name for name in names if name in inputs.figures]
             for i, name in enumerate(drawn, start=1):
                 self.numbers[name] = FigureNumber(document, f"{letter}{i}")
@@ -130,9 +131,9 @@ class Gallery:
         return "\n\n".join(self.figure(name) for name in self.further_names)
 
     def see(self, name: str, before: str = "figure ", after: str = "") -> str:
-        """Return a reference to a figure, such as " (figure 3)", with a link to the figure.
+        """Return a reference to a figure in Markdown, such as "[figure 3](#NAME)".
 
-        If the figure was not drawn, there is no text at all.
+        The result is empty if the figure was not drawn.
 
         before, after : texts around the number; the word "figure" or "figures" at the end of
             ``before`` becomes a part of the link
@@ -140,9 +141,9 @@ class Gallery:
         if name not in self.numbers:
             return ""
         start, word = before, ""
-        for ending in ("figure ", "figures "):
-            if before.endswith(ending):
-                start, word = before.removesuffix(ending), ending
+        for possible_word in ("figure ", "figures "):
+            if before.endswith(possible_word):
+                start, word = before.removesuffix(possible_word), possible_word
         document, number = self.numbers[name]
         # A link within the current document has no file name.
         file = "" if document == self.current else f"{document}.html"
@@ -160,8 +161,8 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     altered = changes(inputs.shipped, inputs.config)
     misprints = read_errata(folder / "errata.yaml")
     names = _names_of_data(inputs, ledger, altered) | {"show": show, "misprints": misprints}
-    # Cells add the names that they define to this dictionary. The errata may use them, because they
-    # are filled in later.
+    # Cells add the names that they define to this dictionary. The errata may use these names,
+    # because their expressions are evaluated after the cells.
     filled = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
     captions = read_captions(folder / "captions.yaml", filled)
@@ -185,7 +186,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
 
 
 def _names_of_data(inputs: Inputs, ledger: Ledger, altered: Sequence[Mapping]) -> dict[str, object]:
-    """Return the names for configuration, tables, claims and statements, and for quoting claims.
+    """Return the values and functions for configuration, tables, claims and statements, by name.
 
     altered : values of the configuration that differ from the shipped ones
     """
@@ -224,13 +225,15 @@ def _names_of_data(inputs: Inputs, ledger: Ledger, altered: Sequence[Mapping]) -
 def execute(source: Path, inputs: Inputs) -> str:
     """Run the code cells of a document, fill in its prose, and return the finished Markdown.
 
-    Raises ValueError, which quotes the cell, if a cell fails.
+    A code cell adds Markdown by calling functions such as `figure`. Raises ValueError, which quotes
+    the cell, if a cell fails.
 
     source : path of the document
     """
     shown: list[str] = []
     names = names_for(inputs, shown.append, source.stem)
     for cell in jupytext.read(source).cells:
+        # A cell with this tag is run only if the document is opened as a notebook.
         if BY_HAND in cell.metadata.get("tags", []):
             continue
         try:

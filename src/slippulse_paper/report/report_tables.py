@@ -107,6 +107,7 @@ def verdicts(lines: Iterable[Line]) -> str:
     rows = []
     for line in lines:
         links = []
+        # A verdict links to the first claim that has it. The subjects of the claims follow.
         for claim, subjects in line.verdicts:
             link = f"[{claim.verdict}](../claims.html#{claim.id})"
             links.append(f"{link} {subjects}".strip())
@@ -179,14 +180,15 @@ def tolerances(ledger: Ledger) -> str:
 
 
 def checks(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> str:
-    """Return a table of the statements of the paper that tests check, with place and test.
+    """Return a table of the claims that are checked by tests of the project, with place and test.
 
-    entries : claims that tests check, by their id
-    sentences : the sentences of the paper, which name the claims
+    entries : these claims, by their id
+    sentences : the sentences of the paper, with their places
     """
     places = places_of(entries, sentences)
     rows = []
     for id, entry in entries.items():
+        # Most of these claims are cases of one test.
         test = entry.get("checked", f"`test_algebra[{id}]`")
         rows.append((entry["statement"], places[id], test, code([id])))
     columns = [
@@ -235,14 +237,13 @@ def sentence_counts(sentences: Sequence[Mapping]) -> str:
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
     """Return a table of the tested sentences, with their place in the paper and their claims."""
-    paragraph = re.compile(r", paragraph (\d+), sentence (\d+)")
     rows = []
     for sentence in sentences:
         claims = claims_of(entries, sentence)
         if claims:
-            # The column is narrow. Of "paragraph 2, sentence 3" it has "¶ 2, 3".
-            position = paragraph.sub(r", ¶ \1, \2", sentence["place"])
-            rows.append((position, sentence["paraphrase"], code(claims)))
+            # The column is narrow, so "paragraph 2, sentence 3" is shortened to "¶ 2, 3".
+            place = re.sub(r", paragraph (\d+), sentence (\d+)", r", ¶ \1, \2", sentence["place"])
+            rows.append((place, sentence["paraphrase"], code(claims)))
     columns = [
         text_column("section", 22),
         text_column("what it says", 45),
@@ -271,7 +272,7 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Return a table of the observed order and the relative uncertainty of measured numbers.
+    """Return a table of the observed order and the relative uncertainty of STUDIED_QUANTITIES.
 
     tables : tables by name; those of grid studies have names such as "uncertainties/NAME"
     """
@@ -301,14 +302,18 @@ def sticking(examples: pd.DataFrame) -> str:
     """Return a table of release time, stick time and slip of an exact rupture at some positions.
 
     Returns an empty text if the study has no exact rupture.
+
+    examples : table of the study, with one row for each position x and quantity
     """
     quantities = ["release_time", "stick_time", "final_slip"]
     examples = examples[examples["quantity"].isin(quantities)]
     if examples["value"].isna().all():
         return ""
-    numbers = examples.pivot(index="x", columns="quantity", values="value")[quantities]
-    texts = numbers.map(lambda value: number(value, 5))
-    rows = [(setting(x), *row) for x, *row in texts.itertuples()]
+    # One row for each position, and one column for each quantity.
+    by_position = examples.pivot(index="x", columns="quantity", values="value")[quantities]
+    rows = []
+    for x, values in by_position.iterrows():
+        rows.append([setting(x), *(number(value, 5) for value in values)])
     columns = [
         number_column("$x$", 10),
         number_column("release $T$", 15),
@@ -330,21 +335,23 @@ def layer_runs(study: pd.DataFrame) -> str:
     """
     rows = []
     for part, title in LAYER_PARTS.items():
-        runs = study[study["part"] == part].sort_values("cells", kind="stable")
-        finest = runs.drop_duplicates(
+        on_all_grids = study[study["part"] == part].sort_values("cells", kind="stable")
+        # These columns identify a run. The row on its finest grid comes last.
+        finest = on_all_grids.drop_duplicates(
             ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
         )
-        for tau0, group in finest.groupby("tau0"):
-            lengths = group["gamma"] * group["weakening"] * group["cells"]
-            shortest, longest = number(lengths.min(), 2), number(lengths.max(), 2)
+        for tau0, runs in finest.groupby("tau0"):
+            lengths_in_cells = runs["gamma"] * runs["weakening"] * runs["cells"]
+            shortest = number(lengths_in_cells.min(), 2)
+            longest = number(lengths_in_cells.max(), 2)
             row = (
                 title,
                 setting(tau0),
-                _listed_numbers(group["gamma"]),
-                _listed_numbers(group["fracture_energy"].dropna()) or DASH,
+                _listed_numbers(runs["gamma"]),
+                _listed_numbers(runs["fracture_energy"].dropna()) or DASH,
                 shortest if shortest == longest else f"{shortest} to {longest}",
-                _listed_numbers(runs["cells"][runs["tau0"] == tau0]),
-                len(group),
+                _listed_numbers(on_all_grids["cells"][on_all_grids["tau0"] == tau0]),
+                len(runs),
             )
             rows.append(row)
     columns = [
@@ -394,16 +401,18 @@ def edges(study: pd.DataFrame) -> str:
 def stability_limits(study: pd.DataFrame) -> str:
     """Return a table of the largest stable time steps of each scheme and order.
 
-    There is one column for each damping ratio. A cell has the derived step. In brackets are two
-    measured steps, divided by the derived one: for a chain of sliding blocks, and for a rupture.
+    There is one column for each damping ratio. A cell has the step by theory (derived) and, in
+    brackets, two measured steps, divided by it: for a chain of sliding blocks, and for a rupture.
+
+    study : the table of the study stability
     """
     ratios = sorted(study["damping_ratio"].unique())
     rows = []
     for (scheme, order), group in study.groupby(["scheme", "order"], sort=False):
         cells = [f"{str(scheme).replace('_', ' ')}, order {order}"]
         for row in group.sort_values("damping_ratio").to_dict("records"):
-            in_chain = _measured_limit(row, "measured")
-            in_rupture = _measured_limit(row, "measured_rupture")
+            in_chain = _relative_measured_step(row, "measured")
+            in_rupture = _relative_measured_step(row, "measured_rupture")
             cells.append(f"{number(row['derived'], 3)} ({in_chain}, {in_rupture})")
         rows.append(cells)
     columns = [text_column("scheme", 16)]
@@ -411,13 +420,13 @@ def stability_limits(study: pd.DataFrame) -> str:
     return table(columns, rows)
 
 
-def _measured_limit(row: Mapping, name: str) -> str:
+def _relative_measured_step(row: Mapping, name: str) -> str:
     """Return a measured largest step divided by the derived one, as text.
 
     The step was found by bisection. If it lies outside the interval of the bisection, the text
     begins with < or >.
 
-    name : how the names of its columns begin
+    name : beginning of the names of the two columns NAME_ratio and NAME_limit
     """
     sign = {"within": "", "below": "<", "above": ">"}[row[f"{name}_limit"]]
     return f"{sign}{number(row[f'{name}_ratio'], 3)}"

@@ -54,8 +54,8 @@ def scene_page(
         promised="promised" in numbers,
         numbers=[_number_cells(row) for row in numbers.itertuples()],
         parameters={key.replace("_", " "): value for key, value in shown.items()},
-        layer=layer and _layer_rows(layer),
-        scales=layer and _scale_rows(layer),
+        layer=_layer_rows(layer) if layer is not None else None,
+        scales=_scale_rows(layer) if layer is not None else None,
     )
 
 
@@ -96,8 +96,8 @@ def _profile_text(attributes: Mapping, layer: Layer | None) -> str:
     profile = prestress_from(attributes)
     parts = []
     if profile.points:
-        (first_x, _), *_, (last_x, _) = profile.points
-        first, last = write(first_x, "length"), write(last_x, "length")
+        positions = [x for x, _ in profile.points]
+        first, last = write(positions[0], "length"), write(positions[-1], "length")
         parts.append(f"linear between {len(profile.points)} points from x = {first} to {last}")
     for x, level in profile.steps:
         parts.append(f"step to {write(level, 'stress')} at x = {write(x, 'length')}")

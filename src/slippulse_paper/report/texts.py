@@ -89,6 +89,7 @@ def _check_keys(label: str, entry: Mapping, keys: Collection[str]) -> None:
 
     label : words for the entry at the beginning of the error message
     """
+    # The keys of the entry may be unknown, and the allowed keys may be missing.
     for key in [*entry, *keys]:
         if key not in keys:
             raise ValueError(f"{label}: {key}: unknown key; allowed: {', '.join(keys)}")
@@ -115,13 +116,14 @@ def parameters(config: Mapping, name: str) -> str:
     left = _profile_values(simulation, "left")
     right = _profile_values(simulation, "right")
     boundary = BOUNDARY_SYMBOLS[simulation["boundary"]]
-    # The values of each parameter by its symbol. A parameter without values is left out below.
+    # The values of each parameter by its symbol. Parameters without values are left out at the end.
     values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
     values |= {f"${term.symbol}$": simulation.get(name) for name, term in EXTRA_TERMS.items()}
     if right == ["same"]:
         values[r"$\tau_0$"] = left
     else:
         values |= {r"$\tau_{0,l}$": left, r"$\tau_{0,r}$": right}
+    # Levels beyond a step of the pre-stress.
     values[r"then $\tau$"] = simulation.get("beyond", {}).get("levels")
     values["$W$"] = _profile_values(simulation, "width")
     values[r"$\beta$"] = simulation.get("beta")
@@ -187,7 +189,7 @@ class Line(NamedTuple):
     text : what was found
     claim : the claim with the worst verdict, of those that count
     clause : a clause of the answer for this verdict; if it is empty, the answer uses `named`
-    verdicts : from `_claims_by_verdict`
+    verdicts : for each verdict the first claim that has it, and the subjects of all such claims
     """
 
     topic: str
@@ -206,7 +208,9 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     lines = []
     for entry in summary["verdict"]:
         worst = worst_claim(ledger, entry["claims"])
+        # Clauses of the answer, by the verdict for which they are written.
         clause_by_verdict = entry.get("said", {})
+        # The subject of each claim by its id. Claims under "beside" are shown, but do not count.
         subjects = entry["claims"] | entry.get("beside", {})
         line = Line(
             topic=entry["topic"],
@@ -214,13 +218,15 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
             text=fill(entry["text"]),
             claim=worst,
             clause=fill(clause_by_verdict.get(worst.verdict, "")),
-            verdicts=_claims_by_verdict(ledger, subjects),
+            verdicts=_first_claim_and_subjects_by_verdict(ledger, subjects),
         )
         lines.append(line)
     return lines
 
 
-def _claims_by_verdict(ledger: Ledger, subjects: Mapping[str, str]) -> list[tuple[Entry, str]]:
+def _first_claim_and_subjects_by_verdict(
+    ledger: Ledger, subjects: Mapping[str, str]
+) -> list[tuple[Entry, str]]:
     """Return, for each verdict, the first claim that has it, and the subjects of all such claims.
 
     The subjects are a text in brackets. It is empty if all claims have the same verdict.
@@ -246,8 +252,9 @@ def _opening(line: Line) -> str:
     if verdict.startswith("reproduced"):
         return f"**Yes**: {line.named}."
     start = "No" if verdict == "not reproduced" else "Not decided"
-    singular = {words.verdict: words.singular for words in chain.from_iterable(SENTENCES)}
-    return f"**{start}**: that {line.named}, {singular[verdict]}."
+    # Find the words for this verdict, such as "is not reproduced".
+    predicate = {words.verdict: words.singular for words in chain.from_iterable(SENTENCES)}
+    return f"**{start}**: that {line.named}, {predicate[verdict]}."
 
 
 def answer(lines: Sequence[Line]) -> str:

@@ -25,6 +25,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     # A scene is a simulation of one run, whose number is 0.
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
+    # Remove predictions that assume a constant pre-stress ahead of a front, where it varies.
     row = at_constant_levels(row)
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
     if layer is not None:

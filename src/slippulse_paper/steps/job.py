@@ -63,10 +63,11 @@ def run_job(job: Job) -> None:
     """
     began = time.monotonic()
     with logged(job.log) as progress_stream:
-        states, records = check_inputs(_paths(job.inputs))
+        # The states of the input files, and the records of the jobs that made them.
+        input_states, input_records = check_inputs(_paths(job.inputs))
         # Data, figures and pages contain the digest of all settings that they depend on, which are
         # those of this job and of the jobs that made its inputs.
-        input_digests = {record.configuration for record in records.values()}
+        input_digests = {record.configuration for record in input_records.values()}
         configuration = digest_of([dict(job.settings), *sorted(input_digests)])
         os.environ[CONFIGURATION_VARIABLE] = configuration
         step = import_module(f"slippulse_paper.steps.{job.step}")
@@ -75,12 +76,14 @@ def run_job(job: Job) -> None:
         report_progress = progress_writer(progress_stream, job.name)
         settings = {**job.variables, **job.settings, "progress": report_progress}
         step.run(job.inputs, job.outputs, settings)
-        check_unchanged(states)
+        # The job fails if an input or a source file has changed meanwhile.
+        check_unchanged(input_states)
         changed_source = next(iter(changed_sources(dict(job.sources))), None)
         if changed_source is not None:
             raise ChangedFile(f"{changed_source}: changed since this run was planned; run again")
         seconds = round(time.monotonic() - began, 2)
-        _write_records(job, configuration, states, seconds)
+        _write_records(job, configuration, input_states, seconds)
+    # A terminal shows a progress bar instead of the logs.
     if not sys.stderr.isatty():
         log = Path(job.log).read_text(encoding="utf-8")
         sys.stderr.write(f"{log}  {job.name}: {seconds} s\n")

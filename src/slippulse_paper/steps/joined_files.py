@@ -1,9 +1,10 @@
 """Joining of the files of the chunks of a sweep.
 
-A joined file is equal, byte by byte, to the file of the same sweep without chunks.
+A joined file is equal, byte by byte, to the file of the same sweep without chunks. Neighbouring
+runs are in different chunks. A run has two numbers: one in its chunk, and one in the sweep.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ from slippulse.data.store import load_dataset
 from slippulse.data.sweeps import combine
 from slippulse.data.tables import load_table, save_table
 from slippulse.data.variables import with_descriptions
+from slippulse.measurement.table import run_columns
+from slippulse.measurement.uncertainty import studied_columns
 
 from ..configuration.chunks import runs_of
 
@@ -34,6 +37,7 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     """
     chunks = [load_dataset(path) for path in paths]
     run_numbers = _run_numbers(paths, [chunk.sizes["point"] for chunk in chunks])
+    # The runs of all chunks by their numbers in the sweep.
     runs: dict[int, Recorded] = {}
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         runs.update(zip(numbers, runs_in(chunk), strict=True))
@@ -49,60 +53,57 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     """
     chunks = _read_as_text(paths)
     has_factor = "factor" in chunks[0]
-    lattices = chunks[0]["factor"].nunique() if has_factor else 1
-    run_numbers = _run_numbers(paths, [len(chunk) // lattices for chunk in chunks])
+    lattice_count = chunks[0]["factor"].nunique() if has_factor else 1
+    run_numbers = _run_numbers(paths, [len(chunk) // lattice_count for chunk in chunks])
     for path, chunk, numbers in zip(paths, chunks, run_numbers, strict=True):
-        if len(chunk) != lattices * len(numbers):
+        if len(chunk) != lattice_count * len(numbers):
             raise UnreadableFile(path, NOT_ONE_SWEEP)
         # Each row gets the number of its lattice, and the number of its run in the sweep.
-        chunk.index = pd.MultiIndex.from_product([range(lattices), numbers])
-    # The chunk with the first run determines the order of the columns.
-    first_runs = [numbers[0] for numbers in run_numbers]
-    in_order = [chunks[position] for position in np.argsort(first_runs)]
-    table = pd.concat(in_order).sort_index().fillna("")
+        chunk.index = pd.MultiIndex.from_product([range(lattice_count), numbers])
+    # The columns of the joined table have the order of the first chunk in this list. It must be the
+    # chunk with the first run of the sweep.
+    chunks.sort(key=lambda chunk: chunk.index[0])
+    table = pd.concat(chunks).sort_index().fillna("")
     if has_factor:
         # Move the column to the end.
         table["factor"] = table.pop("factor")
     save_table(table, joined)
 
 
-def join_grid_studies(
-    paths: Sequence[str], finest: str, keys: Sequence[str], quantities: Callable, joined: str
-) -> None:
+def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
     """Join the tables of uncertainties of the chunks of a sweep.
+
+    Such a table has one row for each run and quantity.
 
     Parameters
     ----------
     paths : sequence of str
         tables of all chunks, in the order of the chunks
     finest : str
-        table of the joined measurements
-    keys : sequence of str
-        columns that identify a run
-    quantities : function
-        returns the names of the measured numbers that have an uncertainty, from the table of
-        measurements and ``keys``
+        joined table of the measured numbers on the finest lattice
     joined : str
         path of the table that is written
     """
-    (measured,) = _read_as_text([finest])
     chunks = _read_as_text(paths)
-    # A table has several rows for each run. Its column `point` has the number of the run in the
-    # chunk, from 0.
+    # The column `point` has the number of the run in the chunk, from 0.
     counts = [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks]
     run_numbers = _run_numbers(paths, counts)
+    measured = load_table(finest)
     if sum(counts) != len(measured):
         raise UnreadableFile(paths[0], NOT_ONE_SWEEP)
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
-    study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=[*keys])
+    # The columns that identify a run are added again below, from the table of measured numbers.
+    keys = run_columns(measured.columns)
+    study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=keys)
     # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets
-    # all rows that a table of the undivided sweep has.
-    names = quantities(load_table(finest), keys)
-    rows = pd.MultiIndex.from_product([range(len(measured)), names], names=study.index.names)
+    # all rows that a table of the undivided sweep has; the added ones are empty.
+    quantities = studied_columns(measured, keys)
+    rows = pd.MultiIndex.from_product([range(len(measured)), quantities], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
-    key_columns = measured[list(keys)].iloc[table["point"]].reset_index(drop=True)
+    (measured_as_text,) = _read_as_text([finest])
+    key_columns = measured_as_text[keys].iloc[table["point"]].reset_index(drop=True)
     columns = [table[["point"]], key_columns, table.drop(columns="point")]
     save_table(pd.concat(columns, axis=1), joined)
 
@@ -116,9 +117,11 @@ def _read_as_text(paths: Sequence[str | Path]) -> list[pd.DataFrame]:
 
 
 def _run_numbers(paths: Sequence[str | Path], counts: Sequence[int]) -> list[list[int]]:
-    """Return the numbers of the runs in each chunk. ``counts`` has how many runs each chunk has.
+    """Return, for each chunk, the numbers that its runs have in the whole sweep.
 
-    Raises UnreadableFile if the chunks of one sweep cannot have these counts.
+    Raises UnreadableFile if the chunks of one sweep cannot have these numbers of runs.
+
+    paths, counts : the file of each chunk, and the number of runs in it
     """
     chunk_count, run_count = len(counts), sum(counts)
     run_numbers = []

@@ -40,21 +40,25 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     The files ``studies`` contain the table of the study `accuracy_cost`.
     """
     study = load_inputs(files).tables["accuracy_cost"]
-    trade = study[study["part"] == "trade"]
-    save_table(timed(trade), outputs["csv"])
+    # These rows have the errors of one setting each. The other rows are for another panel.
+    errors_by_setting = study[study["part"] == "trade"]
+    save_table(timed(errors_by_setting), outputs["csv"])
     with house_style():
         save_figure(draw(load_table(outputs["csv"])), outputs["png"], outputs["pdf"])
 
 
-def timed(trade: pd.DataFrame) -> pd.DataFrame:
-    """Return a table with the errors of the study and the processor seconds of one simulation.
+def timed(errors_by_setting: pd.DataFrame) -> pd.DataFrame:
+    """Time the simulations of each setting, and return its errors with the processor seconds.
 
-    This simulation is the crack for the error of the crack's 95 % time. For all other errors it is
-    a pulse, and the seconds are averaged over the damping ratios.
+    The result has one row for each error of a setting, in the form of `error_rows`. The error of
+    the crack's 95 % time comes with the seconds of the crack. All other errors come with those of a
+    pulse, averaged over the damping ratios.
+
+    errors_by_setting : one row for each setting (scheme, order, step, dx)
     """
     settings = [
         Setting(row.scheme, int(row.order), row.step, row.dx)
-        for row in trade[["scheme", "order", "step", "dx"]].itertuples()
+        for row in errors_by_setting[["scheme", "order", "step", "dx"]].itertuples()
     ]
     # The first simulation of a scheme also loads machine code, which should not be timed.
     one_setting_per_scheme = {setting.scheme: setting for setting in settings}
@@ -63,8 +67,8 @@ def timed(trade: pd.DataFrame) -> pd.DataFrame:
         setting.run_pulse(0.0)
     crack_seconds = [shortest_seconds(setting.run_crack) for setting in settings]
     pulse_seconds = [_mean_pulse_seconds(setting) for setting in settings]
-    with_seconds = trade.assign(crack=crack_seconds, pulse=pulse_seconds)
-    return error_rows(with_seconds, "seconds", _column_of_seconds)
+    with_seconds = errors_by_setting.assign(crack=crack_seconds, pulse=pulse_seconds)
+    return error_rows(with_seconds, "seconds", cost_column_of=_simulation_with_quantity)
 
 
 def _mean_pulse_seconds(setting: Setting) -> float:
@@ -73,8 +77,9 @@ def _mean_pulse_seconds(setting: Setting) -> float:
     return sum(map(shortest_seconds, runs)) / len(runs)
 
 
-def _column_of_seconds(quantity: str) -> str:
-    """Return the column with the processor seconds of the simulation that gives a quantity."""
+def _simulation_with_quantity(quantity: str) -> str:
+    """Return the simulation that gives a quantity, "crack" or "pulse"."""
+    # This quantity is the time at which the crack's left front has covered 95 % of its path.
     return "crack" if quantity == "share_time" else "pulse"
 
 
@@ -95,6 +100,6 @@ def draw(table: pd.DataFrame) -> Figure:
     for axes in panels:
         # Label only ticks inside the axis.
         low, high = axes.get_xlim()
-        few_ticks(axes.xaxis, AXIS_TICKS[(low < AXIS_TICKS) & (high > AXIS_TICKS)])
+        few_ticks(axes.xaxis, [tick for tick in AXIS_TICKS if low < tick < high])
     legend_above(figure, panels[0])
     return figure

@@ -46,7 +46,7 @@ def predictions(
         module = import_module(f"slippulse.prediction.{MODULES[topic]}")
         table = module.predictions(swept_runs, settings)
         is_covered = [_is_covered(swept_run, module.LAWS) for swept_run in swept_runs]
-        # Rows that are removed come back with NaN.
+        # The rows of all other runs are removed, and added again with NaN.
         tables.append(table[is_covered].reindex(table.index))
     return pd.concat(tables, axis=1)
 

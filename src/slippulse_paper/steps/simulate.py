@@ -22,7 +22,7 @@ SOLVERS = {
 
 
 def run(files: dict, outputs: dict, settings: dict) -> None:
-    """Write the ``data`` of the resolved simulation ``sweep`` in the settings.
+    """Solve all scenes of the resolved simulation ``sweep`` in the settings, and write ``data``.
 
     The settings also have the name of the simulation, the solver (an entry of SOLVERS), the number
     of threads, and a function that reports the progress.
@@ -37,9 +37,11 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         threads=settings["threads"],
         progress=settings.get("progress"),
     )
+    # Add the number and the seed of each run's profile, if the profiles are tables of pre-stress.
     data = with_run_labels(data, profile_labels(sweep), sweep["record"])
     flags = [flag for flag in data["run_flags"].values if flag]
     for flag, count in sorted(Counter(flags).items()):
         flagged = f"{count} of {len(scenes)} runs have the flag {flag} (in run_flags)"
         sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
+    # Add units and descriptions of the variables.
     save_dataset(with_descriptions(data), outputs["data"])

@@ -8,7 +8,7 @@ import pandas as pd
 from slippulse.data.sweeps import with_run_labels
 from slippulse.data.tables import load_table, save_table
 from slippulse.measurement.promise import judge_promises, summarise_promises
-from slippulse.measurement.table import LABELS, PARAMETERS
+from slippulse.measurement.table import LABELS, PARAMETERS, run_columns
 from slippulse.measurement.uncertainty import grid_tables
 from slippulse.prediction.comparison import measured_table
 from slippulse.simulation.sweep import solve_sweep
@@ -29,13 +29,13 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     for factor, sweep in sorted(sweeps.items()):
         sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
         coarser_tables[factor] = _run_and_measure(sweep, settings)
-    is_chunk = any("chunk" in sweep for sweep in sweeps.values())
-    measured = _load_measured(files["finest"], is_chunk)
-    # Columns that identify a run.
-    keys = [*PARAMETERS, *(label for label in LABELS if label in measured)]
+    # The sweeps differ only in their spacing.
+    any_sweep = next(iter(sweeps.values()))
+    measured = _load_measured(files["finest"], is_chunk="chunk" in any_sweep)
     tables = (measured, *coarser_tables.values())
-    uncertainties = grid_tables(tables, tuple(coarser_tables), keys)
-    promise = sweeps[min(sweeps)]["accuracy"].get("promise")
+    uncertainties = grid_tables(tables, tuple(coarser_tables), run_columns(measured.columns))
+    # The relative accuracy that the user requires, if there is one.
+    promise = any_sweep["accuracy"].get("promise")
     if promise is not None:
         fraction = settings["measure"]["fraction"]
         uncertainties = judge_promises(uncertainties, measured, promise, fraction)
@@ -46,21 +46,22 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 
 
 def _run_and_measure(sweep: dict, settings: dict) -> pd.DataFrame:
-    """Return the measurements of a resolved simulation after solving its scenes."""
+    """Solve the scenes of a resolved simulation, and return the table of measured numbers."""
     solve = resolve_name(settings["solver"])
     scenes, samples = expand(sweep)
     data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
+    # Add the number and the seed of each run's profile, if the profiles are tables of pre-stress.
     data = with_run_labels(data, profile_labels(sweep), sweep["record"])
     return measured_table(data, settings["measure"])
 
 
 def _load_measured(path: str, is_chunk: bool) -> pd.DataFrame:
-    """Load the measurements of a simulation, or of one chunk of it."""
+    """Load the table of measured numbers of a simulation, or of one chunk of it."""
     measured = load_table(path)
     if not is_chunk:
         return measured
-    # A column of fractions may happen to have only integers in one chunk. Read it as fractions,
-    # since an integer cannot be -0.
+    # A column of floats may happen to have only whole numbers in one chunk, and is then read as
+    # integers. It is read again as floats, because the integer -0 would lose its sign.
     integer_columns = measured.select_dtypes("integer").columns
     measured_columns = integer_columns.difference([*PARAMETERS, *LABELS])
     return load_table(path, dict.fromkeys(measured_columns, float))

@@ -46,6 +46,7 @@ class WorkerPool:
         """
         try:
             self._submit(workers, run_job, job).result()
+        # An executor whose process has failed cannot be used again. The next job makes a new one.
         except BrokenProcessPool:
             self._executor = None
             raise JobFailed("its process was killed") from None
@@ -82,12 +83,13 @@ def _new_executor(workers: int) -> ProcessPoolExecutor:
 
     Where that is not possible, each process loads the libraries itself.
     """
-    # Without these names in the main module, a worker does not load Snakemake, which is the main
-    # program.
+    # A worker would load the main program, Snakemake, which takes long. It does not do this if the
+    # main module has no name and no file.
     vars(sys.modules["__main__"]).update(__spec__=None, __file__=None)
-    path_is_short = len(os.fsencode(tempfile.gettempdir())) <= MAX_TEMPORARY_FOLDER_BYTES
-    # On other systems some libraries fail after a fork.
-    can_fork = path_is_short and sys.platform == "linux"
+    # The socket of the server that forks the workers needs a short path, in the temporary folder.
+    has_short_path = len(os.fsencode(tempfile.gettempdir())) <= MAX_TEMPORARY_FOLDER_BYTES
+    # On systems other than Linux some libraries fail after a fork.
+    can_fork = has_short_path and sys.platform == "linux"
     context = multiprocessing.get_context("forkserver" if can_fork else "spawn")
     context.set_forkserver_preload([LIBRARIES])
     return ProcessPoolExecutor(workers, context, initializer=_prepare_worker)

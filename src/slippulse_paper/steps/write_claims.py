@@ -16,20 +16,26 @@ from .inputs import load_inputs
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the claims with their verdicts (``json``), the ``findings``, and the page ``html``.
 
-    The files are the tables that `load_inputs` reads, and two files of the manuscript (``texts``
-    and ``statements``). The settings have the blocks ``claims``, ``published`` and ``measure`` of
-    the configuration, the damping ratio, and the list of altered values.
+    The files are the tables that `load_inputs` reads, and two files of the manuscript: ``texts``
+    (claims and findings in words) and ``statements`` (sentences of the paper). The settings have
+    the blocks ``claims`` (tolerances), ``published`` (numbers that were read off the paper's
+    figures) and ``measure`` of the configuration, the damping ratio, and the altered values.
     """
-    texts = read_entries(files["texts"], settings["claims"])
+    texts = read_entries(files["texts"], tolerances=settings["claims"])
     sentences = read_text(files["statements"])["statements"]
-    tables = load_inputs(files).tables
-    steady_tolerance = settings["measure"]["steady_tolerance"]
-    readings = settings["published"]
-    evidence = Evidence(tables, texts["claims"], steady_tolerance, readings)
-    claims = all_claims(evidence, texts["over_choices"], sentences)
+    # Everything by which the claims are judged.
+    evidence = Evidence(
+        tables=load_inputs(files).tables,
+        entries=texts["claims"],
+        steady=settings["measure"]["steady_tolerance"],
+        readings=settings["published"],
+    )
+    claims = all_claims(evidence, explanations=texts["over_choices"], sentences=sentences)
+    # JSON has no NaN and no infinity. `finite` replaces them by None.
     further_findings = finite(findings(evidence, settings["damping_ratio"], texts["findings"]))
     write_json(claims, outputs["json"])
     write_json(further_findings, outputs["findings"])
+    # The page has links to all tables.
     paths = files["measured"] + files["predicted"] + files["uncertainties"] + files["studies"]
     folder = Path(outputs["html"]).parent
     links = [Path(path).relative_to(folder).as_posix() for path in paths]

@@ -31,6 +31,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     write_text(manifest(files["results"], base, titles), outputs["manifest"])
     facts = provenance(PROJECT, settings["config"], settings["shipped"], base)
     write_json(facts, outputs["provenance"])
+    # The names of the figures by heading. The beginning of a name determines its heading.
     galleries = {}
     for prefix, heading in HEADINGS.items():
         names = [name for name in settings["figures"] if name.startswith(prefix)]

@@ -73,6 +73,8 @@ def inputs_of(files: Mapping, settings: Mapping) -> Inputs:
 def notebook_names(document: str, show: Callable[[str], None] | None = None) -> dict[str, object]:
     """Return the names that the Python cells of a document use, to run the cells in a notebook.
 
+    Everything that the document needs is read from the results of the last run.
+
     Parameters
     ----------
     document : str
@@ -97,8 +99,10 @@ def notebook_names(document: str, show: Callable[[str], None] | None = None) -> 
         "shipped": project / "config/config.yaml",
         "citation": project / "CITATION.cff",
     }
+    # The tables in NEEDS, by kind. A table of predictions belongs to each measured table.
     names_by_kind = NEEDS | {"predicted": NEEDS["measured"]}
     for kind, names in names_by_kind.items():
+        # The folder of most kinds has the name of the kind.
         folder = results / FOLDERS.get(kind, kind)
         files[kind] = [folder / f"{name}.csv" for name in names]
     config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))["config"]

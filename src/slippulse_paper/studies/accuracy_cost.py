@@ -81,8 +81,12 @@ class Setting(NamedTuple):
         return self._run(UNIFORM_PRESTRESS, DURATION, GAMMA, damping_ratio)
 
     def run_crack(self) -> xr.Dataset:
-        """Simulate a crack that turns into a pulse under a stress boundary."""
-        # It is damped, because otherwise the ringing of the lattice moves its left front.
+        """Simulate a crack that turns into a pulse under a stress boundary.
+
+        The crack is larger than the pulses, so its lattice is coarser than the setting says. The
+        run lasts RELATIVE_CRACK_DURATION times as long as the transition.
+        """
+        # Without damping the ringing of the lattice would move the left front of the crack.
         damping_ratio = max(DAMPING_RATIOS)
         crack = cached_crack(ARRESTING_PRESTRESS, damping_ratio)
         duration = RELATIVE_CRACK_DURATION * crack.transition(COVERED_FRACTION).time
@@ -92,7 +96,10 @@ class Setting(NamedTuple):
     def _run(
         self, prestress: Prestress, duration: float, gamma: float, damping_ratio: float
     ) -> xr.Dataset:
-        """Simulate a scene with this setting, or with a shorter step if its step is unstable."""
+        """Simulate a scene with this setting, or with a shorter step if its step is unstable.
+
+        It has a displacement boundary, or a stress boundary if ``gamma`` is 0.
+        """
         # The textbook scheme and the exact solution do not use the order, but a Scene needs one.
         order = max(self.order, 3)
         stability_limit = largest_step(self.scheme, order, damping_ratio, gamma * self.dx**2)
@@ -118,20 +125,22 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     # The front speed is measured over this last fraction of the path.
     front_window = settings["measure"]["front_window"]
-    preset_names = {
-        Setting("localised", preset["order"], preset["max_step"], preset["dx"]): name
-        for name, preset in settings["presets"].items()
-    }
-    compared = compared_settings()
-    compared += [setting for setting in preset_names if setting not in compared]
+    compared = settings_of_schemes()
+    preset_name_by_setting: dict[Setting, str] = {}
+    for name, preset in settings["presets"].items():
+        setting = Setting("localised", preset["order"], preset["max_step"], preset["dx"])
+        preset_name_by_setting[setting] = name
+        if setting not in compared:
+            compared.append(setting)
     errors = [errors_and_cost(setting, front_window) for setting in compared]
     trade_off = pd.DataFrame(compared).join(pd.DataFrame(errors))
-    trade_off["preset"] = [preset_names.get(setting, "") for setting in compared]
+    # The name is empty if the setting is that of no preset.
+    trade_off["preset"] = [preset_name_by_setting.get(setting, "") for setting in compared]
     trade_off["part"] = "trade"
     return pd.concat([trade_off, locking_rows(front_window)], ignore_index=True)
 
 
-def compared_settings() -> list[Setting]:
+def settings_of_schemes() -> list[Setting]:
     """Return all settings of the textbook scheme and the localised scheme, and the exact one."""
     compared = []
     for dx, step in product(TEXTBOOK_SPACINGS, TEXTBOOK_STEPS):
@@ -177,21 +186,25 @@ def errors_and_cost(setting: Setting, front_window: float) -> dict[str, float]:
 
 
 def pulse_errors(setting: Setting, damping_ratio: float, front_window: float) -> dict[str, float]:
-    """Return the relative errors of a pulse, and the cost of its run."""
+    """Return the relative errors of a simulated pulse, and the cost of its run.
+
+    front_window : last fraction of the path over which the front speed is measured
+    """
     run = setting.run_pulse(damping_ratio)
     pulse = leading_pulse(run, front_window)
-    # In the continuum limit at fixed beta/dx, damping only changes the front speed.
+    # The scheme "continuum" is the limit dx -> 0 at fixed beta/dx, in which beta is 0 and damping
+    # only changes the front speed.
     beta = 0.0 if setting.scheme == "continuum" else damping_ratio * setting.dx
     exact = cached_pulse(UNIFORM_PRESTRESS.left, GAMMA, beta, damping_ratio=damping_ratio)
     transition = cached_transition(UNIFORM_PRESTRESS, GAMMA, damping_ratio)
-    measured_over_exact = {
+    measured_divided_by_exact = {
         "front_speed": pulse.speed / exact.speed,
         "peak_velocity": pulse.peak_velocity / exact.peak_velocity,
         "width": pulse.width / exact.width,
         "final_slip": pulse.slip / exact.slip,
         "transition_time": run.attrs["first_stick_time"] / transition.time,
     }
-    deviations = {name: abs(value - 1.0) for name, value in measured_over_exact.items()}
+    deviations = {name: abs(value - 1.0) for name, value in measured_divided_by_exact.items()}
     return cost_of_run(run) | deviations
 
 

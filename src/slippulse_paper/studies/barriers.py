@@ -4,7 +4,6 @@ A barrier is a stretch of negative pre-stress. Depths come from exact theory and
 """
 
 import math
-from collections.abc import Sequence
 from itertools import product
 from typing import Any
 
@@ -77,7 +76,7 @@ def rows_by_spacing(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, 
     """
     rows = []
     for dx in SPACINGS:
-        depth = penetration_on_lattice(case, pulse, dx, [(0.0, case["barrier"])])
+        depth = penetration_on_lattice(case, pulse, dx, barrier_length=math.inf)
         rows.append(case | {"part": "depth", "dx": dx, "measured": depth})
     return rows
 
@@ -124,21 +123,20 @@ def passes(case: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> 
     """
     exact_depth = case["exact"]
     length = relative_length * exact_depth
-    steps = [(0.0, case["barrier"]), (length, case["tau0"])]
-    distance = penetration_on_lattice(case, pulse, PASSING_SPACING, steps)
+    distance = penetration_on_lattice(case, pulse, PASSING_SPACING, barrier_length=length)
     # A pulse that has passed goes on beyond the end of the barrier.
     return distance > length + 0.5 * exact_depth
 
 
 def penetration_on_lattice(
-    case: dict[str, Any], pulse: SteadyPulse, dx: float, steps: Sequence[tuple[float, float]]
+    case: dict[str, Any], pulse: SteadyPulse, dx: float, barrier_length: float
 ) -> float:
     """Return how far a pulse on a lattice goes on after it has met a barrier.
 
-    The rupture ends half a block beyond the last released block.
+    The pulse ends half a block beyond the last released block.
 
     case : a row of `exact_row`, with the parameters and the exact depth
-    steps : pairs of a distance from the beginning of the barrier and the pre-stress from there on
+    pulse : the exact steady pulse before the barrier
     """
     # The pulse must have forgotten its nucleation before it meets the barrier. A pulse remembers
     # what it met within this distance.
@@ -146,9 +144,12 @@ def penetration_on_lattice(
     steady_from = TAIL_WIDTHS * GAUSSIAN_WIDTH + memory
     # The barrier begins halfway between two blocks.
     start = (math.floor(steady_from / dx) + 0.5) * dx
-    steps_on_the_right = [(start + distance, level) for distance, level in steps]
-    steps_on_the_left = [(-position, level) for position, level in steps_on_the_right]
     tau0 = case["tau0"]
+    # The levels of the pre-stress beyond the positions x = start and x = start + barrier_length.
+    steps_on_the_right = [(start, case["barrier"])]
+    if math.isfinite(barrier_length):
+        steps_on_the_right.append((start + barrier_length, tau0))
+    steps_on_the_left = [(-position, level) for position, level in steps_on_the_right]
     prestress = Prestress(
         tau0, tau0, GAUSSIAN_WIDTH, steps=(*steps_on_the_right, *steps_on_the_left)
     )

@@ -59,8 +59,9 @@ def displacements(role: str, slip: float) -> pd.DataFrame:
     The heights are those of the fault, of the top of the damage zone and of the top of the rock.
     The top of the rock has the imposed displacement.
     """
-    # Damage zone and rock are sheared by the imposed displacement minus the slip. The formula of
-    # the stress drop returns the stress for any displacement between bottom and top.
+    # The formula returns the stress for any displacement between bottom and top of both layers. For
+    # a stress drop this displacement is the slip. Here it is the imposed displacement minus the
+    # slip.
     stress = float(
         damage_zone_stress_drop(
             slip=IMPOSED_DISPLACEMENT - slip,
@@ -71,7 +72,7 @@ def displacements(role: str, slip: float) -> pd.DataFrame:
         )
     )
     # Both layers have the same stress, so the strain of the rock is STIFFNESS_RATIO times that of
-    # the damage zone. The damage zone has the shear modulus 1.
+    # the damage zone. The shear modulus and the thickness of the damage zone are 1.
     y = np.array([0.0, 1.0, 1.0 + ROCK_THICKNESS])
     displacement_per_stress = np.array([0.0, 1.0, 1.0 + STIFFNESS_RATIO * ROCK_THICKNESS])
     displacement = slip + stress * displacement_per_stress

@@ -15,7 +15,7 @@ from slippulse.simulation.exact_rupture import exact_rupture
 from slippulse.theory.barrier import barrier_depth, barrier_depth_estimate
 from slippulse.theory.front_motion import steady_front
 from slippulse.theory.front_speeds import front_speed
-from slippulse.theory.pulse import steady_pulse
+from slippulse.theory.pulse import SteadyPulse, steady_pulse
 from slippulse.theory.rupture import Rupture
 
 from ..configuration.expand import expand
@@ -40,55 +40,59 @@ FOLLOWED_SPEEDS = (1.25, 2.0, 4.0)
 FOLLOWED_DAMPING_RATIOS = (0.0, 0.2)
 FOLLOWED_STIFFNESSES = (0.0, 0.5)
 
-# Functions that compute one number each, by its name. If theory refuses the configured parameters
-# of a number, only this number is NaN.
-Numbers = dict[str, Callable[[], float]]
+# For each number its name and the function that computes it. The functions are called one by one,
+# so that only one number is NaN if theory refuses the configured parameters of this number.
+NumberFunctions = dict[str, Callable[[], float]]
 
 
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
-    """Return the columns quantity, x and value; the value is NaN if theory has none.
+    """Return one row for each number, with the columns quantity, x and value.
 
-    Only the release time, the stick time and the final slip depend on the position x.
+    The value is NaN if theory has none. The position x is NaN for numbers that do not depend on it.
+    These are all except the release time, the stick time and the final slip.
     """
     scenes = {}
     for name, sweep in settings["sweeps"].items():
         scenes[name], _samples = expand(sweep)
     # Most numbers are for the damping ratio and release rule of the published space-time figure.
-    published = scenes["space_time_displacement"][0]
-    damping_ratio, release = published.damping_ratio, published.release
+    published_scene = scenes["space_time_displacement"][0]
+    damping_ratio, release = published_scene.damping_ratio, published_scene.release
     # In this simulation pulses enter another pre-stress at a step. Most numbers are for its gamma,
     # and for the level before the step.
-    across_a_step = scenes["pulses_across_a_step"][0]
-    level, gamma = across_a_step.prestress.left, across_a_step.gamma
+    scene_with_step = scenes["pulses_across_a_step"][0]
+    level, gamma = scene_with_step.prestress.left, scene_with_step.gamma
     levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
-    # The rupture is computed once, and only when a number needs it.
-    rupture = cache(lambda: exact_rupture(published))
-    numbers: Numbers = {
-        "front_speed_elastic": lambda: front_speed(
-            published.prestress.left, damping_ratio, "elastic"
-        )
+
+    @cache
+    def published_rupture() -> Rupture:
+        """Return the exact rupture of the published figure. The first call computes it."""
+        return exact_rupture(published_scene)
+
+    published_level = published_scene.prestress.left
+    functions: NumberFunctions = {
+        "front_speed_elastic": lambda: front_speed(published_level, damping_ratio, "elastic")
     }
-    numbers |= pulse_numbers(level, gamma, damping_ratio, release)
-    numbers |= one_way_numbers(level, gamma, damping_ratio, release)
-    numbers |= transition_numbers(level, levels)
+    functions |= pulse_functions(level, gamma, damping_ratio, release)
+    functions |= one_way_functions(level, gamma, damping_ratio, release)
+    functions |= transition_functions(level, levels)
     # The strain term of the equation of motion at the nucleation point, divided by the pre-stress
     # there, which is 1.
-    numbers["strain_term"] = lambda: abs(curvature_at_nucleation(rupture()))
-    numbers |= front_numbers()
-    rows = [(name, math.nan, value_or_nan(compute)) for name, compute in numbers.items()]
-    rows += rows_by_position(rupture)
+    functions["strain_term"] = lambda: abs(curvature_at_nucleation(published_rupture()))
+    functions |= front_functions()
+    rows = [(name, math.nan, value_or_nan(compute)) for name, compute in functions.items()]
+    rows += rows_by_position(published_rupture)
     return pd.DataFrame(rows, columns=["quantity", "x", "value"])
 
 
-def rows_by_position(rupture: Callable[[], Rupture]) -> list[tuple[str, float, float]]:
-    """Return release time, stick time and final slip at POSITIONS; NaN if theory has no rupture.
+def rows_by_position(compute_rupture: Callable[[], Rupture]) -> list[tuple[str, float, float]]:
+    """Return rows (quantity, x, value) of release time, stick time and final slip at POSITIONS.
 
-    rupture : function that returns the exact rupture, and raises ValueError if there is none
+    The values are NaN if ``compute_rupture`` raises an error, because there is no exact rupture.
     """
     rows = []
     for quantity in ("release_time", "stick_time", "final_slip"):
         try:
-            method = getattr(rupture(), quantity)
+            method = getattr(compute_rupture(), quantity)
             values = np.round(method(POSITIONS), DECIMALS)
         except (ValueError, ArithmeticError):
             values = np.full_like(POSITIONS, math.nan)
@@ -96,13 +100,19 @@ def rows_by_position(rupture: Callable[[], Rupture]) -> list[tuple[str, float, f
     return rows
 
 
-def pulse_numbers(level: float, gamma: float, damping_ratio: float, release: str) -> Numbers:
-    """Return numbers of a steady pulse, and the depth to which it enters a barrier.
+def pulse_functions(
+    level: float, gamma: float, damping_ratio: float, release: str
+) -> NumberFunctions:
+    """Return functions that compute the numbers of a steady pulse that enters a barrier.
 
     The pre-stress is ``level`` before the barrier and -``level`` in it.
     """
-    # In the limit dx -> 0 damping acts only through the front speed.
-    pulse = cache(lambda: steady_pulse(level, gamma, damping_ratio=damping_ratio, release=release))
+
+    def pulse() -> SteadyPulse:
+        """Return the steady pulse before the barrier."""
+        # In the limit dx -> 0 damping acts only through the front speed.
+        return steady_pulse(level, gamma, damping_ratio=damping_ratio, release=release)
+
     return {
         "pulse_width": lambda: pulse().width,
         # The pulse forgets a perturbation within this distance.
@@ -113,8 +123,10 @@ def pulse_numbers(level: float, gamma: float, damping_ratio: float, release: str
     }
 
 
-def one_way_numbers(level: float, gamma: float, damping_ratio: float, release: str) -> Numbers:
-    """Return numbers of a rupture that becomes a single pulse, which runs to the right.
+def one_way_functions(
+    level: float, gamma: float, damping_ratio: float, release: str
+) -> NumberFunctions:
+    """Return functions that compute the numbers of a rupture with a single pulse, to the right.
 
     The left front stops, because the pre-stress is -``level`` on the left.
     """
@@ -132,13 +144,14 @@ def one_way_numbers(level: float, gamma: float, damping_ratio: float, release: s
     }
 
 
-def transition_numbers(level: float, levels: Sequence[float]) -> Numbers:
-    """Return exact transition times divided by the paper's formula.
+def transition_functions(level: float, levels: Sequence[float]) -> NumberFunctions:
+    """Return functions that compute exact transition times divided by the paper's formula.
 
     transition_point_... : the rupture begins at a single point
     transition_peak_... : the rupture begins at a Gaussian of width W = 1
 
-    The pre-stress is ``level``, or the lowest or the highest of ``levels``.
+    The pre-stress is ``level``, or the lowest or the highest of ``levels``, which are in ascending
+    order. For a Gaussian, gamma is 1 or SOFT_GAMMA.
     """
     lowest, highest = levels[0], levels[-1]
     return {
@@ -152,8 +165,8 @@ def transition_numbers(level: float, levels: Sequence[float]) -> Numbers:
     }
 
 
-def front_numbers() -> Numbers:
-    """Return the number of fronts that were followed block by block, and of admissible ones.
+def front_functions() -> NumberFunctions:
+    """Return functions that count the fronts followed block by block, and the admissible ones.
 
     A steady front is admissible if no block ahead of it reaches the threshold before its release,
     and no block behind it comes to rest at once.
@@ -167,7 +180,7 @@ def front_numbers() -> Numbers:
 
 
 def curvature_at_nucleation(rupture: Rupture) -> float:
-    """Return the second derivative of slip by x, at x = 0 and at half the transition time.
+    """Return the curvature of slip, d2u/dx2, at x = 0 and at half the transition time.
 
     The strain du/dx is 0 at x = 0 by symmetry. So its derivative there is the strain at a small
     distance, divided by this distance.

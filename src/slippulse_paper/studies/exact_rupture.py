@@ -47,25 +47,26 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
     map_exact, map_lattice : slip velocity by time and position, for one scene
     difference : mean differences between each lattice and the exact solution
     """
-    parts = []
+    tables_by_scene = []
     for name in NEEDS["data"]:
         # All runs of a simulation are the same scene at several spacings.
         runs = [point(data[name], index) for index in range(data[name].sizes["point"])]
         rupture = exact_rupture(Scene.from_attributes(runs[0].attrs))
-        shown = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN_SPACING)))
-        rows = [pd.DataFrame([shown.attrs])[PARAMETERS].assign(role="scene")]
+        # The run whose spacing is nearest to SHOWN_SPACING, on a logarithmic scale.
+        shown_run = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN_SPACING)))
+        parts = [pd.DataFrame([shown_run.attrs])[PARAMETERS].assign(role="scene")]
         if name in SCENES_OF_CURVES:
-            rows += [_exact_curves(rupture), _lattice_markers(shown)]
+            parts += [_exact_curves(rupture), _lattice_markers(shown_run)]
         if name == SCENE_OF_MAP:
-            rows += _velocity_map(shown, rupture)
+            parts += _velocity_map(shown_run, rupture)
         x = _compared_positions(rupture)
         exact_values = _exact_values(rupture, x)
-        # Near the end of the run a lattice may not have stuck yet.
+        # A stick near the end of the run is not compared, because on a lattice it may come later.
         stick_time = exact_values["stick"]
         stick_time[stick_time > rupture.duration - EDGE_LAYER_TIME] = np.nan
-        rows += [_differences(run, rupture, x, exact_values) for run in runs]
-        parts.append(pd.concat(rows).assign(scene=name))
-    return pd.concat(parts, ignore_index=True)
+        parts += [_differences(run, rupture, x, exact_values) for run in runs]
+        tables_by_scene.append(pd.concat(parts).assign(scene=name))
+    return pd.concat(tables_by_scene, ignore_index=True)
 
 
 def _exact_curves(rupture: Rupture) -> pd.DataFrame:
@@ -87,11 +88,15 @@ def _lattice_markers(run: xr.Dataset) -> pd.DataFrame:
 
 
 def _compared_positions(rupture: Rupture) -> np.ndarray:
-    """Return the positions at which lattices are compared with the exact solution."""
+    """Return the positions at which lattices are compared with the exact solution.
+
+    They cover a fraction of the path of the left front and of that of the right front.
+    """
     left_end, right_end = outermost_fronts(rupture)
+    left_fraction = RUNNING_FRONT_FRACTION
     # Without leaf springs the left front does not stop, but it becomes very slow.
-    left_stops = left_end.reason == "stops" or rupture.gamma == 0.0
-    left_fraction = STOPPING_FRONT_FRACTION if left_stops else RUNNING_FRONT_FRACTION
+    if left_end.reason == "stops" or rupture.gamma == 0.0:
+        left_fraction = STOPPING_FRONT_FRACTION
     first, last = left_end.x * left_fraction, right_end.x * RUNNING_FRONT_FRACTION
     return np.linspace(first, last, POSITION_COUNT)
 
@@ -106,9 +111,9 @@ def _exact_values(rupture: Rupture, x: np.ndarray) -> Values:
 
 
 def _velocity_map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
-    """Return slip velocities of sliding points, by time and position.
+    """Return slip velocities of sliding points, as two tables by time and position.
 
-    They come from the exact solution on the left half, and from a lattice on the right half.
+    The table for x <= 0 comes from the exact solution, and that for x >= 0 from a lattice run.
     """
     x, times = run["sample_position"].values, run["sample_time"].values
     # Both halves include x = 0, whose sample may be off by a rounding error.
@@ -153,7 +158,7 @@ def _differences(
 def _sliding_velocities(
     run: xr.Dataset, rupture: Rupture, first: float, last: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return slip velocities on the lattice, and the exact ones at the same points and times.
+    """Return slip velocities on the lattice, and the exact ones at the same positions and times.
 
     These are all samples of the run between the positions ``first`` and ``last`` that slide, except
     those within EDGE_LAYER_TIME of a release or a stick.

@@ -92,19 +92,22 @@ class Case:
         return exact_transition_displacement(symmetric, self.gamma, self.damping_ratio).time
 
     def expected(self) -> float:
-        """Return the exact value of the quantity; NaN if the case is refused or stopped."""
+        """Return the value that the quantity should have; NaN if the case is refused or stopped.
+
+        It is 0 for quantities that are errors, drifts, or counts of events that should not happen.
+        """
         if self.expected_verdict in (REFUSED, STOPPED):
             return math.nan
         if self.quantity in ("T_trans", "meeting time"):
             return self.exact_time()
         if self.quantity == "slip":
-            # The slip should be the same as with parameters in double precision.
+            # Some cases have dx and gamma in single precision. The slip should not depend on this.
             in_double_precision = replace(self, dx=float(self.dx), gamma=float(self.gamma))
             return float(solve_on_lattice(in_double_precision.scene()).slip.max())
         if self.quantity not in ("front speed", "final slip"):
-            # The other quantities are errors, drifts, and counts of events that should not happen.
             return 0.0
         if self.family == "gamma":
+            # The speed depends on gamma dx^2 here. It is NaN if no front is faster than the waves.
             return value_or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
         pulse = steady_pulse(
             self.level,
@@ -118,6 +121,9 @@ class Case:
     def scene(self) -> Scene:
         """Return the scene, with a stable step unless the case sets another one.
 
+        Its duration is that of the case, which is in units of `exact_time`, plus a small margin if
+        a transition is measured.
+
         Raises ValueError if the Scene refuses a parameter.
         """
         has_springs = self.gamma > 0.0
@@ -127,7 +133,7 @@ class Case:
             # On a lattice the transition is late by the time in which waves cross a few blocks.
             duration += 4.0 * self.dx
         stable_step = choose_step("localised", 4, self.damping_ratio, self.gamma * self.dx**2)
-        further = {"max_step": min(0.5, stable_step)} | self.scene_parameters
+        other_parameters = {"max_step": min(0.5, stable_step)} | self.scene_parameters
         return Scene(
             boundary="displacement" if has_springs else "stress",
             prestress=Prestress(self.level, right_level, self.width, self.peak, bumps=self.bumps),
@@ -135,7 +141,7 @@ class Case:
             dx=self.dx,
             gamma=self.gamma,
             beta=self.damping_ratio * self.dx,
-            **further,
+            **other_parameters,
         )
 
 
@@ -155,11 +161,11 @@ def levels_near_1() -> Iterator[Case]:
 
 
 def levels_near_0() -> Iterator[Case]:
-    """Yield cases of narrow pulses, some of which the lattice resolves.
+    """Yield cases of narrow pulses. Those that the lattice does not resolve should be flagged.
 
     A pulse is resolved if it is many blocks wide. Its width is proportional to the level.
     """
-    for level, dx, duration, width, verdict in (
+    for level, dx, duration, width, expected_verdict in (
         (0.05, 0.8, 60.0, 0.8, FLAGGED),
         (0.05, 0.005, 60.0, 0.02, RIGHT),
         (0.02, 0.4, 60.0, 0.4, FLAGGED),
@@ -171,7 +177,7 @@ def levels_near_0() -> Iterator[Case]:
             family="level near 0",
             label=f"tau_0 = {level:g}, dx = {dx:g}",
             quantity="final slip",
-            expected_verdict=verdict,
+            expected_verdict=expected_verdict,
             dx=dx,
             duration=duration,
             level=level,
@@ -198,12 +204,12 @@ def small_gammas() -> Iterator[Case]:
 
 
 def large_gammas() -> Iterator[Case]:
-    """Yield cases of front speeds up to a large gamma dx^2.
+    """Yield cases of front speeds at increasing gamma dx^2. Large values should be flagged.
 
     In the last case, no front on the lattice is faster than the waves.
     """
     dx = 0.01
-    for gamma, verdict in (
+    for gamma, expected_verdict in (
         (1.0, RIGHT),
         (100.0, RIGHT),
         (1000.0, FLAGGED),
@@ -215,7 +221,7 @@ def large_gammas() -> Iterator[Case]:
             family="gamma",
             label=f"gamma dx^2 = {gamma * dx**2:g}",
             quantity="front speed",
-            expected_verdict=verdict,
+            expected_verdict=expected_verdict,
             dx=dx,
             duration=40.0 / math.sqrt(gamma),
             width=0.1,
@@ -227,10 +233,11 @@ def large_gammas() -> Iterator[Case]:
 def strong_damping() -> Iterator[Case]:
     """Yield cases of front speeds under both release rules, at damping ratios from 0 to 100.
 
-    Strong damping makes fronts under the total rule fast, so they settle early. Under the elastic
-    rule, the theory holds only if the damped layer at the front is thin compared with the pulse.
+    Under the total rule strong damping makes fronts fast, so they settle early and the runs can be
+    shorter. Under the elastic rule the theory holds only if the damped layer at the front is thin
+    compared with the pulse, so cases of strong damping should be flagged.
     """
-    for release, damping_ratio, duration, verdict in (
+    for release, damping_ratio, duration, expected_verdict in (
         ("total", 0.0, 40.0, RIGHT),
         ("total", 1.0, 40.0 / 1.05, RIGHT),
         ("total", 10.0, 40.0 / 1.5, RIGHT),
@@ -243,7 +250,7 @@ def strong_damping() -> Iterator[Case]:
             family="damping",
             label=f"beta/dx = {damping_ratio:g}, {release}",
             quantity="front speed",
-            expected_verdict=verdict,
+            expected_verdict=expected_verdict,
             dx=0.05,
             duration=duration,
             level=0.3,
@@ -254,7 +261,7 @@ def strong_damping() -> Iterator[Case]:
 
 def extreme_spacings() -> Iterator[Case]:
     """Yield cases with spacings from one layer thickness to a thousandth of it."""
-    for dx, quantity, duration, verdict in (
+    for dx, quantity, duration, expected_verdict in (
         (1.0, "front speed", 60.0, FLAGGED),
         (0.3, "front speed", 60.0, RIGHT),
         (0.1, "front speed", 60.0, RIGHT),
@@ -267,7 +274,7 @@ def extreme_spacings() -> Iterator[Case]:
             family="spacing",
             label=f"dx = {dx:g}",
             quantity=quantity,
-            expected_verdict=verdict,
+            expected_verdict=expected_verdict,
             dx=dx,
             duration=duration,
         )
@@ -280,12 +287,12 @@ def extreme_nucleations() -> Iterator[Case]:
     blocks.
     """
     dx = 0.05
-    for width_in_blocks, verdict in ((0.5, REFUSED), (1.0, RIGHT), (2.0, RIGHT)):
+    for width_in_blocks, expected_verdict in ((0.5, REFUSED), (1.0, RIGHT), (2.0, RIGHT)):
         yield Case(
             family="nucleation",
             label=f"W = {width_in_blocks:g} dx",
             quantity="front speed",
-            expected_verdict=verdict,
+            expected_verdict=expected_verdict,
             dx=dx,
             duration=20.0,
             width=width_in_blocks * dx,
@@ -304,12 +311,11 @@ def extreme_nucleations() -> Iterator[Case]:
 def negative_levels() -> Iterator[Case]:
     """Yield cases of arrests of the left front in strongly negative pre-stress.
 
-    If the pre-stress is too negative for the friction ratio, blocks would slide back. Without
-    damping the ringing of the lattice stalls such fronts, and on coarse lattices they are late. A
-    label states the level on the left, the block spacing, the damping ratio b and the friction
-    ratio r.
+    A case should be flagged for one of three reasons. Blocks would slide back, because the
+    pre-stress is too negative for the friction ratio r. The lattice is undamped, and its ringing
+    stalls the front. Or the lattice is coarse, and the front is late.
     """
-    for level, dx, friction_ratio, damping_ratio, verdict in (
+    for level, dx, friction_ratio, damping_ratio, expected_verdict in (
         (-1.0, 0.005, 5.0, 0.1, RIGHT),
         (-1.0, 0.01, 5.0, 0.0, FLAGGED),
         (-10.0, 0.02, 5.0, 0.1, FLAGGED),
@@ -323,7 +329,7 @@ def negative_levels() -> Iterator[Case]:
             family="negative level",
             label=f"tau_l = {level:g}, dx {dx:g}, b {damping_ratio:g}, r {friction_ratio:g}",
             quantity="T_trans",
-            expected_verdict=verdict,
+            expected_verdict=expected_verdict,
             dx=dx,
             duration=1.5,
             level=level,
@@ -351,7 +357,7 @@ def long_duration() -> Iterator[Case]:
 def single_precision() -> Iterator[Case]:
     """Yield one case with parameters, and two with a lattice state, in single precision.
 
-    The parameters are converted to double precision. The solver does not offer a lattice state in
+    The solver converts the parameters to double precision. It does not offer a lattice state in
     single precision.
     """
     yield Case(
@@ -407,7 +413,7 @@ def two_nucleations() -> Iterator[Case]:
 
     The fronts meet halfway between them, at the time when a single front would arrive there.
     """
-    # This bump raises the level to 1, as the Gaussian at x = 0 does.
+    # Position, height and width of a bump that raises the level to 1, as the Gaussian at x = 0.
     second_peak = (NUCLEATION_DISTANCE, 1.0 - LEVEL, 1.0)
     for quantity, relative_duration in (("meeting time", 1.5), ("asymmetry", 3.0)):
         yield Case(
@@ -424,9 +430,13 @@ def two_nucleations() -> Iterator[Case]:
 def barriers() -> Iterator[Case]:
     """Yield one case of a deep barrier, which stops the pulse, and one of a shallow barrier.
 
-    There is a barrier on each side, far enough away for the pulse to be steady.
+    The deep barrier should stop the pulse before its centre: the quantity "passes by", which is the
+    distance that the pulse runs beyond the centre, is 0. The shallow barrier should not change the
+    final front speed. The pulse is steady when it meets a barrier, of which there is one on each
+    side.
     """
     for depth, quantity in ((1.5, "passes by"), (0.2, "front speed")):
+        # Each barrier is a Gaussian with a position, a height and a width.
         right_barrier = (BARRIER_CENTRE, -depth, BARRIER_WIDTH)
         left_barrier = (-BARRIER_CENTRE, -depth, BARRIER_WIDTH)
         yield Case(

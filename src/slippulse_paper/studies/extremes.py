@@ -51,7 +51,8 @@ WRONG_WITHOUT_FLAG, NO_NUMBER = "WRONG WITHOUT A FLAG", "no number"
 PULSE_QUANTITIES = ("front speed", "final slip", "speed drift", "slip drift", "energy residual")
 # Flags and states of a run without any problem.
 STATES_WITHOUT_FLAG = ("", "steady", "none", "resolved")
-# Quantities that are columns of the measured table. All others are measured by `measured_here`.
+# Quantities that are columns of the table of measured numbers. All others are measured by
+# `additional_quantity`.
 MEASURED_COLUMNS = {
     "front speed": "front_speed_right",
     "final slip": "pulse_slip",
@@ -124,8 +125,8 @@ def tolerance_of(case: Case) -> float:
 def verdict_on_outcome(outcome: Outcome, error: float, tolerance: float) -> str:
     """Return the verdict on a case that was run to its end.
 
-    error : deviation from the expected value; NaN if theory has no value, and then the verdict on
-        any number without a flag is that it is wrong
+    error : deviation from the expected value; NaN if theory has no value, and then any number
+        without a flag is wrong
     """
     if outcome.message == NOT_OFFERED:
         return NOT_OFFERED
@@ -144,10 +145,12 @@ simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 def measured(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
 
+    The first three quantities below are not measured like all others, and come first.
+
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
     """
     if case.quantity == "velocity error":
-        # The solver does not offer single precision. The error of a simple scheme shows why.
+        # The solver does not offer single precision. The error of a simple program shows why.
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":
@@ -158,11 +161,12 @@ def measured(case: Case, front_window: float) -> Outcome:
         # A run without any release has a flag, but this is right here, so the flag is left out.
         return Outcome(float(run.attrs["releases"]), block_updates=run.attrs["block_updates"])
     settings = {"front_window": front_window, "fraction": COVERED_FRACTION, "trailing_times": ()}
+    # The row that this run would have in the table of measured numbers, with its states.
     row = measured_row(run, settings)
     if case.quantity in MEASURED_COLUMNS:
         value = row[MEASURED_COLUMNS[case.quantity]]
     else:
-        value = measured_here(run, case.quantity)
+        value = additional_quantity(run, case.quantity)
     flags = [row["run_flags"], row.get("transition_state", "")]
     if case.quantity in PULSE_QUANTITIES:
         flags.append(row["pulse_state"])
@@ -170,8 +174,8 @@ def measured(case: Case, front_window: float) -> Outcome:
     return Outcome(value, message, run.attrs["block_updates"])
 
 
-def measured_here(run: xr.Dataset, quantity: str) -> float:
-    """Return a quantity of a run that is not in the measured table.
+def additional_quantity(run: xr.Dataset, quantity: str) -> float:
+    """Return a quantity of a run that is not in the table of measured numbers.
 
     meeting time : time at which fronts from two nucleations meet, halfway between these
     asymmetry : largest difference between the slip and its mirror image about the meeting point,

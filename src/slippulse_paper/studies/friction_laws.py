@@ -56,7 +56,7 @@ NO_RUPTURE = "no rupture"
 # Front speed as a function of d_c/dx at fixed beta: levels, spacings, and values of d_c/dx.
 SELECTION_LEVELS = (0.5, 0.8)
 SELECTION_SPACINGS = (0.08, 0.04, 0.02)
-SPACINGS_PER_DISTANCE = (1.0, 2.0, 4.0, 8.0)
+DISTANCES_OVER_DX = (1.0, 2.0, 4.0, 8.0)
 # Cases with exact numbers: level, law, and step divided by dx. Each is run at SELECTION_SPACINGS.
 CASES: tuple[tuple[float, Friction, float], ...] = (
     (0.5, BoundedRate(0.3, 1.0), FINE_STEP_OVER_DX),
@@ -79,7 +79,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     # The centre of a pulse counts as at rest below this fraction of the largest velocity.
     still_fraction = settings["measure"]["still"]
     cases = [
-        _run(level, law, dx=dx, step_over_dx=step_over_dx, still_fraction=still_fraction)
+        _simulated_row(level, law, dx=dx, step_over_dx=step_over_dx, still_fraction=still_fraction)
         for (level, law, step_over_dx), dx in product(CASES, SELECTION_SPACINGS)
     ]
     parts = {
@@ -106,7 +106,9 @@ def _rows_of_all_laws(still_fraction: float) -> list[dict[str, Any]]:
             laws.append(SlipWeakening(d_c, NUCLEATION_HALF_LENGTH))
             laws.append(ExponentialWeakening(d_c, NUCLEATION_HALF_LENGTH))
         rows += [
-            _run(level, law, dx=DX, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction)
+            _simulated_row(
+                level, law, dx=DX, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction
+            )
             for law in laws
         ]
     return rows
@@ -118,23 +120,27 @@ def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
     The exact speed is NaN if the fracture energy is too large for a rupture.
     """
     rows = []
-    for level, dx, spacings_per_distance in product(
-        SELECTION_LEVELS, SELECTION_SPACINGS, SPACINGS_PER_DISTANCE
+    for level, dx, distance_over_dx in product(
+        SELECTION_LEVELS, SELECTION_SPACINGS, DISTANCES_OVER_DX
     ):
-        law = SlipWeakening(spacings_per_distance * dx, NUCLEATION_HALF_LENGTH)
+        law = SlipWeakening(distance_over_dx * dx, NUCLEATION_HALF_LENGTH)
         exact_speed = np.nan
-        if _strength(level, law) < 1.0:
+        # At a relative strength of 1 the fracture energy is as large as the released energy.
+        if _relative_strength(level, law) < 1.0:
             exact_speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed
-        row = _run(level, law, dx=dx, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction)
+        row = _simulated_row(
+            level, law, dx=dx, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction
+        )
         rows.append(row | {"d_c": law.d_c, "exact_speed": exact_speed})
     return rows
 
 
-def _strength(level: float, law: Friction) -> float:
-    """Return how strong a friction law is, relative to the pre-stress.
+def _relative_strength(level: float, law: Friction) -> float:
+    """Return how strong a friction law is compared with the pre-stress tau_0 = ``level``.
 
-    For slip weakening this is d_c divided by tau_0^2/gamma. For laws of slip rate it is the limit F
-    divided by tau_0, with a minus sign for rate weakening, so that one axis can show both laws.
+    For slip weakening this is d_c/(tau_0^2/gamma), where d_c is the slip over which friction falls.
+    For laws of slip rate it is the limit of friction at high rates, divided by tau_0. It has a
+    minus sign for rate weakening, so that one axis can show both laws.
     """
     parameters = law.mapping()
     if "d_c" in parameters:
@@ -143,15 +149,16 @@ def _strength(level: float, law: Friction) -> float:
     return -relative_limit if isinstance(law, RateWeakening) else relative_limit
 
 
-def _run(
+def _simulated_row(
     level: float, law: Friction, dx: float, step_over_dx: float, still_fraction: float
 ) -> dict[str, Any]:
     """Simulate a rupture, and return its parameters, its regime and the size of its pulse.
 
     The size is NaN if no block sticks behind the pulse.
 
+    level : uniform pre-stress outside the nucleation
     step_over_dx : largest time step divided by dx
-    still_fraction : see `_regime`
+    still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
     # The step must also resolve the friction law.
     step_over_dx = min(step_over_dx, 0.9 * law.traits.longest_step / dx)
@@ -168,16 +175,16 @@ def _run(
         max_step=step_over_dx,
         friction=law,
     )
-    run = recorded(scene, None, solve_by_scheme(scene)).dataset()
+    run = recorded(scene, samples=None, solution=solve_by_scheme(scene)).dataset()
     right = right_side.right_of_centre(run)
-    regime = _regime(right, level / GAMMA, still_fraction)
+    regime = _regime(right, balance_slip=level / GAMMA, still_fraction=still_fraction)
     pulse = PulseSize(np.nan, np.nan)
     if regime == right_side.STICKING:
         pulse = right_side.pulse_at(right, DURATION)
     return {
         "law": law.law,
         "level": level,
-        "strength": _strength(level, law),
+        "strength": _relative_strength(level, law),
         "dx": dx,
         "beta": beta,
         "regime": regime,
@@ -205,7 +212,7 @@ def _late_front_speed(right: xr.Dataset) -> float:
 def _regime(right: xr.Dataset, balance_slip: float, still_fraction: float) -> str:
     """Return the regime of a rupture, from its right side.
 
-    - No rupture: the front hardly advances in the second half of the run.
+    - No rupture: the front hardly advances in the second half of the run (by MIN_GROWTH or less).
     - Sticking pulse: the trailing edge advances, and the slip behind it is larger than
       ``balance_slip``. So much slip remains only if friction holds the blocks against the springs.
     - Creeping pulse: blocks do not stick in this way, but the centre is nearly at rest at the end.
@@ -216,13 +223,14 @@ def _regime(right: xr.Dataset, balance_slip: float, still_fraction: float) -> st
     """
     halfway = right_side.sliding_part(right, 0.5 * DURATION)
     end = right_side.sliding_part(right, DURATION)
-    # The path of the front begins at the edge of the nucleation.
+    # Lengths of the path of the front, which begins at the edge of the nucleation.
     path_halfway = halfway.front - NUCLEATION_HALF_LENGTH
-    if end.front <= NUCLEATION_HALF_LENGTH + MIN_GROWTH * path_halfway:
+    path_at_end = end.front - NUCLEATION_HALF_LENGTH
+    if path_at_end <= MIN_GROWTH * path_halfway:
         return NO_RUPTURE
-    edge_advances = end.trailing_edge > MIN_GROWTH * halfway.trailing_edge
-    slip = right_side.pulse_at(right, DURATION).slip
-    if edge_advances and slip > MIN_OVERSHOOT * balance_slip:
+    trailing_edge_advances = end.trailing_edge > MIN_GROWTH * halfway.trailing_edge
+    slip_behind_pulse = right_side.pulse_at(right, DURATION).slip
+    if trailing_edge_advances and slip_behind_pulse > MIN_OVERSHOOT * balance_slip:
         return right_side.STICKING
     velocity = right["slip_velocity"].values
     centre_velocity = float(velocity[0])
@@ -235,7 +243,12 @@ def _exact_row(level: float, law: Friction) -> dict[str, Any]:
         pulse = cached_pulse(level, GAMMA, BETA, law.d_c)
     else:
         pulse = rate_pulse(level, GAMMA, DAMPING_RATIO, law)
-    row = {"law": law.law, "level": level, "strength": _strength(level, law), "speed": pulse.speed}
+    row = {
+        "law": law.law,
+        "level": level,
+        "strength": _relative_strength(level, law),
+        "speed": pulse.speed,
+    }
     if pulse.sticks:
         row |= {"pulse_width": pulse.width, "pulse_slip": pulse.slip}
     return row

@@ -50,18 +50,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     tables_by_sweep = {
         name: pd.DataFrame(parameters(sweep)) for name, sweep in settings["sweeps"].items()
     }
-    # While dx varies along a line, either b = beta/dx or beta is fixed. The column held names the
-    # fixed one, and the column fixed has its value.
-    fixed_ratio = tables_by_sweep["continuum_fixed_ratio"]
-    refined = [fixed_ratio.assign(held="b", fixed=fixed_ratio["damping_ratio"])]
+    # While dx varies along a line, either b = beta/dx or beta is fixed. The column held names
+    # the fixed parameter, and the column fixed has its value.
+    at_fixed_ratio = tables_by_sweep["continuum_fixed_ratio"]
+    runs_by_spacing = [at_fixed_ratio.assign(held="b", fixed=at_fixed_ratio["damping_ratio"])]
     for name in ("continuum_fixed_beta", "front_speed_fixed_beta"):
-        fixed_beta = tables_by_sweep[name]
-        refined.append(fixed_beta.assign(held="beta", fixed=fixed_beta["beta"]))
+        at_fixed_beta = tables_by_sweep[name]
+        runs_by_spacing.append(at_fixed_beta.assign(held="beta", fixed=at_fixed_beta["beta"]))
     parts = [
         *prestress_lines(tables_by_sweep["front_speed"]),
         *spring_lines(tables_by_sweep["front_speed_springs"]),
         # This has the rows of two panels, refined and limit.
-        refined_lines(pd.concat(refined)),
+        lines_by_spacing(pd.concat(runs_by_spacing)),
     ]
     return pd.concat(parts, ignore_index=True)
 
@@ -98,21 +98,21 @@ def spring_lines(runs: pd.DataFrame) -> Iterator[pd.DataFrame]:
         yield pd.DataFrame(line)
 
 
-def refined_lines(runs: pd.DataFrame) -> pd.DataFrame:
+def lines_by_spacing(runs: pd.DataFrame) -> pd.DataFrame:
     """Return front speeds as functions of the spacing dx, and their limits dx -> 0.
 
-    runs : parameters of simulated runs. The column held has the name of what is fixed while dx
-        varies, "beta" or "b" (for beta/dx), and the column fixed has its value.
+    runs : parameters of simulated runs. The column held is "beta" or "b" (for beta/dx). It names
+        the parameter that is fixed while dx varies, and the column fixed has its value.
     """
     rows = []
-    for values, spacings in runs.query(REFINED_RUNS).groupby(LINE_COLUMNS)["dx"]:
-        line = dict(zip(LINE_COLUMNS, values, strict=True))
+    for line_values, spacings in runs.query(REFINED_RUNS).groupby(LINE_COLUMNS)["dx"]:
+        line = dict(zip(LINE_COLUMNS, line_values, strict=True))
         level, gamma, release = line["left"], line["gamma"], line["release"]
         beta_is_fixed = line["held"] == "beta"
         # Under the total rule there is no limit at fixed beta.
         if beta_is_fixed and release == "elastic":
-            speed = continuum_front_speed(level, gamma, line["fixed"])
-            rows.append(line | {"panel": "limit", "speed": speed})
+            limit = continuum_front_speed(level, gamma, beta=line["fixed"])
+            rows.append(line | {"panel": "limit", "speed": limit})
         # The points are evenly spaced in the logarithm of dx, and those of the runs are added.
         even_spacings = np.geomspace(spacings.min(), spacings.max(), SPACING_COUNT)
         for dx in np.union1d(even_spacings, spacings):

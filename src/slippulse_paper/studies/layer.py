@@ -127,7 +127,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def pulse_rows(gamma: float) -> Rows:
-    """Return the rows of the parts pulse, far and damped.
+    """Return the rows of the parts pulse, far and damped, for all fracture energies and levels.
 
     Those of the part pulse also have the numbers of `one_dimensional_theory`.
     """
@@ -140,38 +140,39 @@ def pulse_rows(gamma: float) -> Rows:
         theory = one_dimensional_theory(scene)
         rows += [row | theory for row in near_rows] + far_rows
     if gamma == GAMMA:
-        # The pulse of the part step in uniform pre-stress is followed, too.
+        # One pulse of the part step has a uniform pre-stress. It is followed to FAR_STATIONS, too.
         _, far_rows = near_and_far(uniform("displacement", gamma, LEVEL, STEP_WEAKENING))
         rows += far_rows
     return rows
 
 
 def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
-    """Return the rows of one pulse at STATION_POSITIONS and, on finer grids, at FAR_STATIONS.
+    """Return the rows of one pulse at STATION_POSITIONS and, on some grids, at FAR_STATIONS.
 
-    A pulse that splits is followed on all finer grids, too, and on two grids with damping.
+    The pulse is followed to FAR_STATIONS on the grids of `grids_far_away`. If it has split in one
+    run, it is also followed on the next finer grid, and on two grids with damping.
     """
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
     coarsest = CELLS[0]
-    # The run on the coarsest grid shows how long the others must be.
+    # The run on the coarsest grid shows how long the runs to near and far stations must be.
     scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
     run = simulate_layer(scene)
     near_rows, far_rows = measured("pulse", scene, run, 1, positions), []
-    short_scene = shortened(scene, run, positions)
-    long_scene = extended(short_scene, near_rows[-1]["speed"])
-    followed_grids = grids_far_away(short_scene)
-    if coarsest in followed_grids:
-        far_rows += followed("far", long_scene, simulate_layer(long_scene), 1)
-    for cells in finer_grids(short_scene):
-        has_split = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
-        is_followed = has_split or cells in followed_grids
-        scene = replace(long_scene if is_followed else short_scene, cells=cells)
+    near_scene = shortened(scene, run, positions)
+    far_scene = extended(near_scene, near_rows[-1]["speed"])
+    far_grids = grids_far_away(near_scene)
+    if coarsest in far_grids:
+        far_rows += followed("far", far_scene, simulate_layer(far_scene), 1)
+    for cells in finer_grids(near_scene):
+        split_in_last_run = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
+        is_followed_far = split_in_last_run or cells in far_grids
+        scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
         run = simulate_layer(scene)
         near_rows += measured("pulse", scene, run, 1, positions)
-        if is_followed:
+        if is_followed_far:
             far_rows += followed("far", scene, run, 1)
     if any(math.isfinite(row["split_position"]) for row in far_rows):
-        far_rows += damped_rows(long_scene, followed_grids[:2])
+        far_rows += damped_rows(far_scene, far_grids[:2])
     return near_rows, far_rows
 
 
@@ -203,7 +204,9 @@ def is_long(scene: LayerScene) -> bool:
 def finer_grids(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of all grids for a pulse except the coarsest.
 
-    Brittle pulses need finer grids. At small gamma pulses are wide and runs are long.
+    Very brittle pulses, and brittle pulses at GAMMA, have all grids. Other pulses have two of them.
+    At small gamma, where pulses are wide and runs are long, brittle pulses have two grids if their
+    run is not long, and all other pulses have one.
 
     scene : a scene of the pulse with the duration and the trail that it needs
     """
@@ -214,10 +217,11 @@ def finer_grids(scene: LayerScene) -> Sequence[int]:
 
 
 def grids_far_away(scene: LayerScene) -> Sequence[int]:
-    """Return the numbers of cells of the grids on which a pulse is followed farther.
+    """Return the numbers of cells of the grids on which a pulse is followed to FAR_STATIONS.
 
-    These are two grids, and three for very brittle pulses. Brittle pulses that are narrow, and
-    those at GAMMA, need the finer ones. There is none for long runs.
+    There is none if the run is long, and very brittle pulses have the three finest grids. All other
+    pulses have two grids. Pulses at GAMMA, and brittle pulses unless gamma is small, have finer
+    ones than the rest.
     """
     if is_long(scene):
         return ()
@@ -228,20 +232,24 @@ def grids_far_away(scene: LayerScene) -> Sequence[int]:
 
 
 def extended(scene: LayerScene, speed: float) -> LayerScene:
-    """Return a scene whose pulse passes the last of FAR_STATIONS, not of STATION_POSITIONS.
+    """Return a longer scene, in which the pulse passes the last of FAR_STATIONS.
+
+    In the given scene it passes the last of STATION_POSITIONS. The trail is the length behind the
+    waves in which the layer is computed. It grows as far as the front falls behind the waves.
 
     speed : front speed of the pulse
     """
-    way = (FAR_STATIONS[-1] - STATION_POSITIONS[-1]) * stretch(scene.gamma)
-    more_time = (1.0 + SLOWER_FRONT) * way / speed
-    trail = scene.trail + max(0.0, more_time - way)
-    return replace(scene, duration=scene.duration + more_time, trail=trail)
+    additional_distance = (FAR_STATIONS[-1] - STATION_POSITIONS[-1]) * stretch(scene.gamma)
+    additional_time = (1.0 + SLOWER_FRONT) * additional_distance / speed
+    # Waves run at speed 1.
+    trail = scene.trail + max(0.0, additional_time - additional_distance)
+    return replace(scene, duration=scene.duration + additional_time, trail=trail)
 
 
 def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
-    """Return the rows of one run at FAR_STATIONS, and tell whether the pulse has split.
+    """Return the rows of one run at FAR_STATIONS, with columns that show whether the pulse split.
 
-    Behind the tip of a split pulse points stick early and slide again. The columns are
+    Behind the tip of a split pulse points stick early and slide again.
 
     split_position : distance at which a point first sticks early, between the first and the last
         station; NaN if none does
@@ -249,8 +257,9 @@ def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
     """
     positions = [side * station * stretch(scene.gamma) for station in FAR_STATIONS]
     rows = measured(part, scene, run, side, positions)
-    first_sliding_time = rows[0]["pulse_width"] / rows[0]["speed"]
-    sticks_early = run.stick_time - run.release_time < SPLIT_FRACTION * first_sliding_time
+    sliding_time_at_first_station = rows[0]["pulse_width"] / rows[0]["speed"]
+    sliding_time = run.stick_time - run.release_time
+    sticks_early = sliding_time < SPLIT_FRACTION * sliding_time_at_first_station
     distance = side * run.x
     is_beyond = distance > abs(positions[0])
     is_split = is_beyond & (distance < abs(positions[-1])) & sticks_early
@@ -266,8 +275,8 @@ def patch_rows(gamma: float) -> Rows:
     """Return one row for each grid, with the time at which the nucleation region sticks.
 
     This is the region without friction around x = 0, in which the rupture starts. The column
-    strip_first_stick has the time at which an infinite layer that slides uniformly would stick. In
-    this time a shear wave runs to the top of the layer and back.
+    strip_first_stick has the time at which an infinite layer (a strip) that slides uniformly would
+    stick. In this time a shear wave runs to the top of the layer and back.
     """
     shear_wave_speed = math.sqrt(0.5 * gamma)
     # The layer has the height 1.
@@ -290,7 +299,7 @@ def free_top_rows() -> Rows:
 
 
 def held_top_rows() -> Rows:
-    """Return the rows of FREE_TOP_PULSES with a held top, on the same grids."""
+    """Return the rows of the pulses of `free_top_rows`, on the same grids, but with a held top."""
     rows: Rows = []
     for tau0, energy in FREE_TOP_PULSES:
         scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
@@ -304,9 +313,10 @@ def crack_rows() -> Rows:
 
 
 def coupled_rows() -> Rows:
-    """Return the rows of pulses under a strength that depends on the normal stress.
+    """Return the rows of pulses on a fault whose strength depends on the normal stress.
 
-    The pulse on the right and the pulse on the left differ, so both are measured.
+    The coupling is the friction coefficient of this dependence. The pulse on the right and the
+    pulse on the left differ, so both are measured.
     """
     weakening = weakening_of(STANDARD_ENERGY, LEVEL, GAMMA)
     scene = uniform("displacement", GAMMA, LEVEL, weakening)
@@ -326,6 +336,7 @@ def barrier_rows() -> Rows:
     stops according to the paper's equation.
     """
     prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
+    # The scene of `crack_rows`, with another pre-stress and duration, and below another weakening.
     scene = replace(
         uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING),
         prestress=prestress,
@@ -362,6 +373,7 @@ def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> Layer
         weakening=weakening,
         duration=OTHER_DURATION * stretch(gamma),
         nucleation=NUCLEATION_HALF_LENGTH * stretch(gamma),
+        precision="single",
     )
 
 
@@ -377,6 +389,9 @@ def across_a_step(
 
     The pre-stress changes at STEP_POSITION on both sides, or is uniform if both levels are equal.
     The column tau0 has the level that the pulse enters.
+
+    weakening : slip over which the strength falls
+    grids, stations : see `at_stations`
     """
     scene = uniform("displacement", gamma, before, weakening)
     if before != level:

@@ -92,10 +92,13 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     The slip is 0 where a pulse has died before. It is given on the fine grid (pulse_slip) and on
     the coarse grid (coarse_slip).
     """
-    thick_pulses = [Pulse(THICK_LEVEL, THICK_LEVEL, length) for length in THICK_HALF_LENGTHS]
+    thick_pulses = [
+        Pulse(tau0=THICK_LEVEL, before=THICK_LEVEL, patch_half_length=half_length)
+        for half_length in THICK_HALF_LENGTHS
+    ]
     thin_pulses = [
-        Pulse(level, relative_level * level, THIN_HALF_LENGTH)
-        for level, relative_level in product(THIN_LEVELS, RELATIVE_LEVELS_BEFORE)
+        Pulse(tau0=level, before=relative_before * level, patch_half_length=THIN_HALF_LENGTH)
+        for level, relative_before in product(THIN_LEVELS, RELATIVE_LEVELS_BEFORE)
     ]
     rows_by_pulse = [slips_on_both_grids(THICK, pulse) for pulse in thick_pulses]
     rows_by_pulse += [slips_on_both_grids(THIN, pulse) for pulse in thin_pulses]
@@ -126,6 +129,10 @@ def slips_on_both_grids(layer: Layer, pulse: Pulse) -> pd.DataFrame:
 def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
     """Return the row of the last position, with the changes of slip since the first position.
 
+    rows : slips of one pulse, one row for each position, from `slips_on_both_grids`
+
+    The additional columns are:
+
     first_slip : slip at the first position, on the fine grid
     change, coarse_change : relative change of slip from the first to the last position, on the fine
         and on the coarse grid
@@ -133,6 +140,7 @@ def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
     cells_in_weakening : cells of the fine grid in the length over which the strength falls
     """
     first, last = rows.iloc[0], rows.iloc[-1]
+    # The length over which the strength falls is gamma times the weakening.
     changes = {
         "first_slip": first["pulse_slip"],
         "change": last["pulse_slip"] / first["pulse_slip"] - 1.0,
@@ -152,7 +160,7 @@ def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
     pass before waves may return from the top, and in the thin layer before the end.
     """
     thickness = layer.thickness
-    # A run of the layer has units of its own thickness, so its results are converted here.
+    # All results of the run are in units of the thickness of its own layer, and converted below.
     run = simulate_layer(scene_in_own_units(layer, pulse, cells))
     positions = np.array(layer.positions)
     distances = np.abs(thickness * run.x - positions[:, np.newaxis])
@@ -176,6 +184,7 @@ def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
     cells : number of cells per unit of length
     """
     thickness = layer.thickness
+    # A pulse starts in the pre-stress ``before`` and may enter another one, tau0, at a step.
     step = STEP_POSITION / thickness
     steps = ((step, pulse.tau0), (-step, pulse.tau0)) if pulse.before != pulse.tau0 else ()
     return LayerScene(
@@ -188,4 +197,5 @@ def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
         nucleation=pulse.patch_half_length / thickness,
         rate=RATE,
         trail=layer.trail / thickness,
+        precision="single",
     )

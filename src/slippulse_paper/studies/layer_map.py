@@ -68,18 +68,21 @@ def row_of_point(gamma: float, energy: float, cells: int) -> dict[str, Any]:
 
 
 def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[dict[str, float]]:
-    """Return speed, width and slips of the three pulses of one point, for each grid.
+    """Return speed, width and slips of the three pulses of one point of the map, for each grid.
 
-    The parameters are those of `row_of_point`.
+    energy : fracture energy divided by the energy that the layer releases, G_0
+    grids : numbers of cells over the height of the layer
     """
     weakening = weakening_of(energy, LEVEL, gamma)
     numbers: list[dict[str, float]] = [{} for _ in grids]
     for name, relative_level in RELATIVE_LEVELS_BEFORE.items():
         before = relative_level * LEVEL
         rows = across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
+        # The rows of the first grid come first. Each grid has one row for each station.
         stations = len(STATION_POSITIONS)
         for grid, numbers_on_grid in enumerate(numbers):
-            before_step, halfway, last = rows[grid * stations : (grid + 1) * stations]
+            rows_of_grid = rows[grid * stations : (grid + 1) * stations]
+            before_step, halfway, last = rows_of_grid
             if name == "uniform":
                 numbers_on_grid |= {"speed": last["speed"], "pulse_width": last["pulse_width"]}
             numbers_on_grid |= {
@@ -110,6 +113,7 @@ def outcome(slips: Mapping[str, float]) -> str:
     for name in ("from_below", "from_above"):
         slip = slips[f"{name}_slip"]
         upper_limit = (1.0 + EQUAL_SLIP_TOLERANCE) * steady_slip
+        # The slip is larger than the steady slip and still rises.
         is_growing = is_growing or slip > max(upper_limit, slips[f"{name}_slip_halfway"])
         difference = abs(slip - steady_slip)
         reaches_steady_slip[name] = difference < EQUAL_SLIP_TOLERANCE * steady_slip

@@ -59,24 +59,25 @@ class Arrest(NamedTuple):
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return exact transitions and the paper's estimates.
 
-    There is one row for each run of figure 5 and each combination of choices.
+    There is one row for each run of figure 5 and each combination of choices. The table
+    ``open_choices`` lists them, with one row for each value of each choice.
     """
     with_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_displacement"]))
     with_springs = with_springs.query("left > 0")
     without_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_stress"]))
     # The left front arrests only in negative pre-stress.
     without_springs = without_springs.query("left < 0")
-    values_by_choice = tables["open_choices"].groupby("choice")
-    fraction_choices = values_by_choice.get_group("fraction")["value"]
-    # The choice "last release" is a text. It exists for lattices only, so it is left out.
-    fractions = [value for value in fraction_choices if isinstance(value, float)]
-    damping_choices = values_by_choice.get_group("damping_ratio")[["value", "release"]]
+    choices = tables["open_choices"]
+    fraction_values = choices.loc[choices["choice"] == "fraction", "value"]
+    # The value "last release" is a text. It exists for lattices only, so it is left out.
+    fractions = [value for value in fraction_values if isinstance(value, float)]
+    # Each damping ratio has its release rule.
+    damping_choices = choices.loc[choices["choice"] == "damping_ratio", ["value", "release"]]
     parts = []
     for damping_ratio, release in damping_choices.values:
-        for rows in (
-            displacement_transitions(with_springs, damping_ratio, release),
-            stress_arrests(without_springs, damping_ratio, release, fractions),
-        ):
+        transitions = displacement_transitions(with_springs, damping_ratio, release)
+        arrests = stress_arrests(without_springs, damping_ratio, release, fractions)
+        for rows in (transitions, arrests):
             parts.append(rows.assign(damping_ratio=damping_ratio, release=release))
     return pd.concat(parts, ignore_index=True)
 
@@ -96,16 +97,16 @@ def displacement_transitions(
         # Beyond this position the pre-stress is uniform, and the front has a constant speed.
         uniform_from = GAUSSIAN_END_IN_WIDTHS * width
         speed = float(front_speed(level, damping_ratio, release))
-        # Waves run at speed 1, so up to the time t only the positions |x| < t influence x = 0.
+        # Waves run at speed 1, so up to the time t only the fronts at |x| < t influence x = 0.
         reach = max(float(latest_sticks.max()), 2.0 * uniform_from)
         prestress = Prestress(level, level, width)
         fronts = fast_fronts(prestress, damping_ratio, release, reach, gammas.max())
         times = stick_times_of_centre(fronts, gammas, latest_sticks)
-        positions = front_positions(fronts, times, speed=speed, uniform_from=uniform_from)
+        right_fronts = right_front_positions(fronts, times, speed=speed, uniform_from=uniform_from)
         rows = group[["boundary"]].assign(nucleation="Gaussian", left=level, width=width)
         rows["gamma"] = gammas
         rows["transition_time"] = times
-        rows["transition_length"] = 2.0 * positions
+        rows["transition_length"] = 2.0 * right_fronts
         rows[PAPER_COLUMNS] = [paper_transition_displacement(level, gamma) for gamma in gammas]
         parts.append(rows)
     return pd.concat(parts)
@@ -116,6 +117,7 @@ def stick_times_of_centre(
 ) -> np.ndarray:
     """Return the stick time of x = 0 in ruptures that differ only in gamma.
 
+    fronts : the curve t(x) of both fronts, which the ruptures have in common
     latest_sticks : times until which a stick is searched, one for each gamma
     """
     times = []
@@ -126,10 +128,10 @@ def stick_times_of_centre(
     return np.array(times)
 
 
-def front_positions(
+def right_front_positions(
     fronts: Curve, times: np.ndarray, speed: float, uniform_from: float
 ) -> np.ndarray:
-    """Return the positions of the right front at some times.
+    """Return the position of the right front at each of some times.
 
     speed : constant speed of the front in uniform pre-stress
     uniform_from : position beyond which the pre-stress is uniform
@@ -178,26 +180,28 @@ def stress_arrests(
 
 
 def tent_arrest(left: float, damping_ratio: float, release: str) -> Arrest:
-    """Return the arrest for nucleation by a tent with W = 1.
+    """Return the arrest of the left front for nucleation by a tent, exactly.
 
-    The pre-stress of a tent falls linearly from 1 at x = 0 to 0 at x = 1 and to ``left`` at x = -1.
+    The pre-stress of a tent falls linearly from 1 at x = 0 to 0 at x = 1 and to ``left`` < 0 at
+    x = -1. Beyond the tent it is constant.
     """
-    # The time in which the right front crosses the tent is the mean of 1/speed over the levels from
-    # 0 to 1, because the tent falls evenly over the distance 1.
+    # The right front crosses the tent from x = 0 to x = 1 in a time that is the mean of 1/speed
+    # over the levels from 0 to 1, because the tent falls evenly over the distance 1.
     levels = 0.5 + 0.5 * TENT_NODES
     slownesses = 1.0 / front_speed(levels, damping_ratio, release)
     crossing_time = float(TENT_WEIGHTS @ slownesses) / 2.0
-    # Over the tent, the integral of the pre-stress is 1/2 on the right of x = 0 and (1 + left)/2 on
-    # the left. The negative level between the tent and x_minus balances it.
+    # At x_minus the integral of the pre-stress to infinity is 0. Over the tent, the integral is 1/2
+    # on the right of x = 0 and (1 + left)/2 on the left. The negative level between x_minus and the
+    # tent balances it.
     tent_integral = 1.0 + 0.5 * left
-    distance = 1.0 + tent_integral / -left
+    distance_to_x_minus = 1.0 + tent_integral / -left
     # The last wave that drives the left front starts at x = 1 when the right front arrives there,
     # and runs to x_minus. In the same time the right front runs as far. Both have speed 1.
     return Arrest(
         nucleation="tent",
         fraction=1.0,
-        transition_time=distance + 1.0 + crossing_time,
-        transition_length=2.0 * distance + 2.0,
-        paper_transition_time=distance,
-        paper_transition_length=2.0 * distance,
+        transition_time=distance_to_x_minus + 1.0 + crossing_time,
+        transition_length=2.0 * distance_to_x_minus + 2.0,
+        paper_transition_time=distance_to_x_minus,
+        paper_transition_length=2.0 * distance_to_x_minus,
     )

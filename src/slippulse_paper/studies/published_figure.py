@@ -95,7 +95,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def left_panel_rows(panel: "LeftPanel", release: str, part: str) -> pd.DataFrame:
-    """Return the rows of one release rule, with a fit for each of its damping ratios."""
+    """Return the rows of one release rule, with a fit for each of its damping ratios.
+
+    part : "profile" to fit all readings except the arrows, or "arrows" to fit all readings
+    """
     rows: list[pd.DataFrame] = []
     trials = [FIRST_GUESS]
     for damping_ratio in DAMPING_RATIOS[release]:
@@ -168,9 +171,9 @@ def readings_of(published: dict, simulation: str) -> pd.DataFrame:
 
 
 def sampled_run(scene: Scene, left: float) -> xr.Dataset:
-    """Simulate a scene on a lattice, and sample velocities at all blocks beyond the position left.
+    """Simulate a scene on a lattice, and sample velocities at TIME_COUNT times.
 
-    The samples on the right reach beyond the front.
+    The samples are taken at all blocks from the position ``left`` to beyond the right front.
     """
     right = RELATIVE_SAMPLE_REACH * scene.duration
     positions = scene.dx * np.arange(round(left / scene.dx), round(right / scene.dx))
@@ -186,13 +189,15 @@ class LeftPanel:
     """
 
     def __init__(self, readings: pd.DataFrame) -> None:
+        """Keep the readings, from `readings_of`, with arrays of their columns."""
         self.readings = readings
         self.drawn = readings["drawn"].to_numpy()
         self.errors = readings["reading_error"].to_numpy()
-        # A matrix that turns deviations into numbers with independent errors of 1.
+        # This matrix turns deviations from the readings into numbers with independent errors of 1.
         shared_errors = readings["shared_error"].to_numpy()
         self.combinations = independent_combinations(self.errors, shared_errors)
         self.quantities = readings["quantity"].tolist()
+        # Readings of the trailing edge have the time in their name.
         self.edges = [name for name in self.quantities if name.startswith(TRAILING_EDGE_PREFIX)]
         self.edge_times = [float(name.removeprefix(TRAILING_EDGE_PREFIX)) for name in self.edges]
 
@@ -213,6 +218,7 @@ class LeftPanel:
             "largest_velocity": rupture.largest_velocity,
         }
         allowed = f"{', '.join(values)}, {TRAILING_EDGE_PREFIX}TIME"
+        # The trailing edge is at the position x when x sticks.
         x = np.linspace(0.0, front_end.x, EDGE_POSITION_COUNT)
         stick_time = rupture.stick_time(x)
         is_stuck = np.isfinite(stick_time)
@@ -240,6 +246,7 @@ class LeftPanel:
             order=ORDER,
         )
         run = sampled_run(scene, left=0.0)
+        # The trailing edge is measured at the times of its readings.
         settings = {"front_window": FRONT_WINDOW, "trailing_times": self.edge_times}
         values, _ = measure_run(run, MEASURE_SETTINGS | settings)
         values["largest_velocity"] = float(run["sample_velocity"].max())
@@ -268,7 +275,7 @@ class LeftPanel:
         """Fit tau_0 and gamma by least squares, and return one row for each reading.
 
         Each row has the best tau_0 and gamma, their errors, and the values and pulls of the
-        reading at this optimum.
+        reading at this optimum. A pull is a deviation from the reading, divided by its error.
 
         guess : tau_0 and gamma at which the fit begins
         with_arrows : whether the lengths of arrows are fitted, too

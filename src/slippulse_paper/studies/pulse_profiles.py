@@ -68,11 +68,12 @@ def stress_profile(run: Run) -> pd.DataFrame:
     x_minus_t, velocity = crack.far_pulse()
     from_tail_to_front = np.argsort(x_minus_t, kind="stable")
     x_minus_t, velocity = x_minus_t[from_tail_to_front], velocity[from_tail_to_front]
-    end_of_tail = int(np.argmax(velocity > TAIL_CUT * velocity.max()))
-    start = max(0, end_of_tail - 1)
-    peak_position = x_minus_t[np.argmax(velocity)]
-    x, velocity = x_minus_t[start:] - peak_position, velocity[start:]
-    # The derivative needs points with some distance between them.
+    x = x_minus_t - x_minus_t[np.argmax(velocity)]
+    # The tail is cut off, except one point at which the velocity is small.
+    first_beyond_tail = int(np.argmax(velocity > TAIL_CUT * velocity.max()))
+    start = max(0, first_beyond_tail - 1)
+    x, velocity = x[start:], velocity[start:]
+    # Points that nearly coincide with the one before are left out, because derivatives would fail.
     is_apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
     x, velocity = x[is_apart], velocity[is_apart]
     # A derivative with respect to t is minus that with respect to x. The integral begins at the

@@ -145,7 +145,9 @@ def _steady_pulses() -> pd.DataFrame:
 
 
 def _lattice_row(level: float, fraction: float, still_fraction: float) -> dict[str, Any]:
-    """Simulate one run, and return its regime and its pulse; NaN if the pulse does not stick.
+    """Simulate one run, and return its regime and the width and slip of its pulse.
+
+    Width and slip are NaN if the pulse does not stick.
 
     fraction : rate strengthening divided by the critical value
     still_fraction : fraction of the largest velocity below which the centre of a pulse counts as at
@@ -153,6 +155,7 @@ def _lattice_row(level: float, fraction: float, still_fraction: float) -> dict[s
     """
     front_speed_at_level, critical_alpha = _front(level)
     alpha, dx = fraction * critical_alpha, SPACING_OVER_LEVEL * level
+    # The time in which a pulse becomes steady is proportional to 1/(v - 1).
     duration = MIN_DURATION + MEMORY_TIMES / (front_speed_at_level - 1.0)
     scene = Scene(
         boundary="displacement",
@@ -185,7 +188,7 @@ def _regime_and_pulse(
     """Return the regime at the end of a run, and the size of the pulse; NaN if it does not stick.
 
     A pulse sticks if its sliding part has stopped growing and ends at a trailing edge. Otherwise it
-    ends in a tail in which velocities become smaller and smaller.
+    ends in a tail in which velocities decrease without end, to QUIET_VELOCITY and less.
     """
     right = right_side.right_of_centre(run)
     halfway = right_side.sliding_part(right, 0.5 * duration)
@@ -193,10 +196,10 @@ def _regime_and_pulse(
     keeps_growing = end.width >= MIN_GROWTH * halfway.width
     velocity = right["slip_velocity"].values
     largest_velocity = velocity.max()
-    # The innermost block that still slides is the first one with a velocity above 0.
-    innermost_velocity = velocity[velocity > 0.0][0]
-    has_quiet_tail = innermost_velocity / largest_velocity <= QUIET_VELOCITY
-    if not keeps_growing and not has_quiet_tail:
+    # The sliding block that is nearest to the centre is the first one with a velocity above 0.
+    velocity_near_centre = velocity[velocity > 0.0][0]
+    has_endless_tail = velocity_near_centre / largest_velocity <= QUIET_VELOCITY
+    if not keeps_growing and not has_endless_tail:
         return right_side.STICKING, right_side.pulse_at(right, duration)
     centre_velocity = float(run["slip_velocity"].sel(x=0.0, method="nearest"))
     regime = right_side.regime_without_sticks(centre_velocity, largest_velocity, still_fraction)
@@ -221,9 +224,10 @@ def _velocity_map(regime: str, alpha: float) -> pd.DataFrame:
 
 
 def _arrest(alpha: float, dx: float) -> pd.DataFrame:
-    """Return the left front and the largest velocity at TIMES, on a lattice without leaf springs.
+    """Simulate a rupture without leaf springs, and return its left front and largest velocity.
 
-    The column gap has the distance from the front to its final position x_minus.
+    There is one row for each of TIMES. The column gap has the distance from the left front to
+    x_minus, the position that the front approaches.
     """
     duration = float(TIMES[-1])
     scene = Scene(
@@ -249,12 +253,13 @@ def _arrest(alpha: float, dx: float) -> pd.DataFrame:
 
 
 def _asymptote(alpha: float) -> pd.DataFrame:
-    """Return the theoretical left front and largest velocity at late times, in the same columns.
+    """Return the left front and the largest velocity at TIMES, by theory for late times.
 
-    At late times the slip at the distance y from x_minus is U erfc(y sqrt(alpha/t)/2), because it
-    spreads by diffusion. The final slip U is the integral of y times the pre-stress over y. The
-    largest velocity is the largest time derivative of the slip. The gap is so long that the
-    pre-stress in it balances the strain at x_minus, U sqrt(alpha/(pi t)).
+    The column gap has the distance from the left front to x_minus, the position that the front
+    approaches. At late times the slip spreads by diffusion: at the distance y from x_minus it is
+    U erfc(y sqrt(alpha/t)/2). The final slip U is the integral of y times the pre-stress over y.
+    The largest velocity is the largest time derivative of the slip. The integral of the pre-stress
+    over the gap balances the strain at x_minus, U sqrt(alpha/(pi t)).
     """
     x_minus = prestress_balance_position(ARRESTING_PRESTRESS)
     x = np.linspace(x_minus, 12.0, 20_001)

@@ -31,17 +31,17 @@ PROFILES = [
 ]
 PROFILE_TIME = 12.0
 PROFILE_POINTS = 241
-# Pairs of levels (left, right): corners of the quadrant in which both are positive, ends of the
-# axis on which the left level is negative, and a point in an area of pulses next to this axis.
-QUADRANT = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+# Pairs of levels (left, right): ends and middle of the axis on which the left level is negative and
+# the right level is 0, and a point in the area of pulses next to this axis.
 NEGATIVE_AXIS = np.array([(-1.0, 0.0), (0.0, 0.0)])
+MIDDLE_OF_NEGATIVE_AXIS = np.array([-0.5, 0.0])
 NEAR_NEGATIVE_AXIS = np.array([-0.9, 1e-3])
 
 
 class Series(NamedTuple):
-    """Rows that belong together, and the pair of levels whose regime they all have.
+    """Rows of one area, line or profile, and a pair of levels whose regime all of them have.
 
-    For the corners of an area, this is a point inside the area.
+    left, right : the levels of a profile, or of a point inside the area or on the line
     """
 
     role: str
@@ -68,6 +68,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ]
     parts = []
     for number, series in enumerate(all_series):
+        # All rows of a series have the regime of its pair of levels.
         regime = final_regime(
             series.left,
             series.right,
@@ -84,49 +85,52 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def areas_and_lines(damping_ratio: float, release: str, still_fraction: float) -> Iterator[Series]:
-    """Yield the four quadrants of each plane, the areas next to its axes, and lines on its axes.
+    """Yield for each boundary the areas of one regime, and the lines where one level is 0.
 
-    An area that comes later covers a part of an earlier one. Next to the axes there are areas of
-    another regime only without leaf springs.
+    The first areas are the four quadrants of the plane. Without leaf springs, areas of pulses
+    cover a part of two of them.
 
     still_fraction : a rupture is a pulse if its velocity at x = 0 falls below this fraction of its
         largest velocity
     """
-    next_to_axis = area_next_to_axis(damping_ratio, release, still_fraction)
+    pulse_area = corners_of_pulse_area(damping_ratio, release, still_fraction)
     for boundary, gamma in GAMMAS.items():
-        for left_sign, right_sign in product((-1.0, 1.0), repeat=2):
-            signs = np.array([left_sign, right_sign])
-            # The corners of the quadrant in which the levels have these signs.
-            corners = np.where(QUADRANT > 0.0, signs, 0.0)
-            yield outline("area", boundary, corners, inside=0.5 * signs)
-        # The plane is symmetric: the order (1, 0) exchanges the left and the right level.
-        for order in ([0, 1], [1, 0]):
+        for left, right in product((-1.0, 1.0), repeat=2):
+            quadrant = np.array([(0.0, 0.0), (left, 0.0), (left, right), (0.0, right)])
+            middle = np.array([0.5 * left, 0.5 * right])
+            yield outline("area", boundary, quadrant, inside=middle)
+        # The plane is symmetric, so each area or line has a mirror image with exchanged levels.
+        for mirrored in (False, True):
             if gamma == 0.0:
-                inside = NEAR_NEGATIVE_AXIS[order]
-                yield outline("area", boundary, next_to_axis[:, order], inside)
-            middle_of_axis = 0.5 * NEGATIVE_AXIS[0, order]
-            yield outline("line", boundary, NEGATIVE_AXIS[:, order], middle_of_axis)
+                yield outline("area", boundary, pulse_area, NEAR_NEGATIVE_AXIS, mirrored)
+            yield outline("line", boundary, NEGATIVE_AXIS, MIDDLE_OF_NEGATIVE_AXIS, mirrored)
 
 
-def area_next_to_axis(damping_ratio: float, release: str, still_fraction: float) -> np.ndarray:
-    """Return the corners of the area of pulses next to the axis with a negative left level.
+def corners_of_pulse_area(damping_ratio: float, release: str, still_fraction: float) -> np.ndarray:
+    """Return the corners (left, right) of an area of pulses in the plane without leaf springs.
 
-    Without leaf springs, a rupture is a pulse if its positive level is small compared with the size
-    of its negative level. Otherwise it is a crack.
+    In this area the left level is negative, and the right level is positive but small compared
+    with the size of the left one. With a larger right level, ruptures are cracks.
     """
     # A rupture is a pulse up to this ratio of the positive level to the size of the negative one.
     level_ratios = largest_pulse_ratio(BORDER_LEVELS, damping_ratio, release, still_fraction)
     negative_levels = -BORDER_LEVELS / level_ratios
     border = np.column_stack([negative_levels, BORDER_LEVELS])
-    return np.vstack([[(0.0, 0.0)], border, [(negative_levels[-1], 0.0)]])
+    end_on_axis = (negative_levels[-1], 0.0)
+    return np.vstack([[(0.0, 0.0)], border, [end_on_axis]])
 
 
-def outline(role: str, boundary: str, corners: np.ndarray, inside: np.ndarray) -> Series:
-    """Return a series of corners, or of the ends of a line.
+def outline(
+    role: str, boundary: str, corners: np.ndarray, inside: np.ndarray, mirrored: bool = False
+) -> Series:
+    """Return the series of an area or a line, from its corners or ends.
 
     corners : pairs of a left and a right level, one in each row
     inside : one pair of levels in the area or on the line
+    mirrored : if True, the left and the right level are exchanged in all pairs
     """
+    if mirrored:
+        corners, inside = corners[:, ::-1], inside[::-1]
     rows = pd.DataFrame(corners, columns=["left", "right"])
     return Series(role, boundary, rows, left=inside[0], right=inside[1])
 

@@ -131,12 +131,12 @@ def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
         run = simulated_run(scene)
         fates += [fate_of_pulse(run, side, end) for side in (1, -1)]
     # A pulse that leaves the first half alive counts as alive at the end of this half.
-    in_first_half = [
+    fates_in_first_half = [
         Fate(min(fate.distance, middle), fate.died and fate.distance < middle) for fate in fates
     ]
     rows = [
-        {"stop": middle} | death_rate(in_first_half, START),
-        {"stop": end} | death_rate(fates, middle),
+        {"stop": middle} | death_rate(fates_in_first_half, start=START),
+        {"stop": end} | death_rate(fates, start=middle),
     ]
     return pd.DataFrame(rows).assign(part="length", dx=LENGTH_SPACING)
 

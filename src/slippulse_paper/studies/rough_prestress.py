@@ -141,8 +141,9 @@ def fate_of_pulse(run: Recorded, side: int, stop: float) -> Fate:
 def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
     """Return the rows of one ensemble under a displacement boundary.
 
-    The row of the part ensemble has the death rate and the predicted rate of fatal barriers, and,
-    if slip was recorded, `local_state`. The part survival has the curve of both sides together.
+    The row of the part ensemble has the death rate and the predicted rate of fatal barriers. If
+    slip was recorded, it also compares slip and front speed with those of steady pulses. The part
+    survival has one curve for the pulses of both sides.
     """
     stop = ensemble.parameters["stop"]
     fates = []
@@ -150,12 +151,12 @@ def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
         fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
     row = {"part": "ensemble"} | death_rate(fates, START) | barrier_rate(ensemble.parameters)
     if "slip" in ensemble.runs[0]:
-        row |= local_state(ensemble)
+        row |= steady_pulse_comparison(ensemble)
     curve = survival(fates).assign(part="survival")
     return pd.concat([pd.DataFrame([row]), curve]).assign(**ensemble.parameters)
 
 
-def local_state(ensemble: Ensemble) -> dict[str, float]:
+def steady_pulse_comparison(ensemble: Ensemble) -> dict[str, float]:
     """Compare final slip and front speed with steady pulses at the local and the mean pre-stress.
 
     Slip and speed are divided by those of the steady pulse at the mean pre-stress.
@@ -199,16 +200,21 @@ def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]
     slowness : mean over all runs, divided by the slowness of the steady pulse
     slowness_off : largest relative deviation of a run from the slowness that theory predicts, which
         is the mean over all blocks of the slowness of a steady front at the local pre-stress
+
+    The argument ``pulse`` is the steady pulse at the mean pre-stress.
     """
-    exact_slownesses = 1.0 / front_speed(SPEED_LEVELS, ensemble.parameters["damping_ratio"])
-    slownesses, local_slownesses = [], []
+    damping_ratio = ensemble.parameters["damping_ratio"]
+    slownesses_at_levels = 1.0 / front_speed(SPEED_LEVELS, damping_ratio)
+    slownesses, predicted_slownesses = [], []
     for run in ensemble.runs:
         is_passed = (run["x"] > START) & np.isfinite(run["release_time"])
         x, times = run["x"][is_passed], run["release_time"][is_passed]
         slownesses.append((times[-1] - times[0]) / np.ptp(x))
-        at_blocks = np.interp(run["prestress"][is_passed], SPEED_LEVELS, exact_slownesses)
-        local_slownesses.append(np.mean(at_blocks))
-    ratios = np.divide(slownesses, local_slownesses)
+        predicted_at_blocks = np.interp(
+            run["prestress"][is_passed], SPEED_LEVELS, slownesses_at_levels
+        )
+        predicted_slownesses.append(np.mean(predicted_at_blocks))
+    ratios = np.divide(slownesses, predicted_slownesses)
     return {
         "slowness": float(np.mean(slownesses) * pulse.speed),
         "slowness_off": float(np.max(np.abs(ratios - 1.0))),
@@ -223,21 +229,23 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
 
     smooth_push : push that a pulse would have far away without roughness
     """
+    # Part pulse, with one row for each run.
     parameters = ensemble.parameters
     fates = [fate_of_pulse(run, 1, parameters["stop"]) for run in ensemble.runs]
     integrals = [prestress_integral(profile) for profile in ensemble.profiles]
     pulses = pd.DataFrame(fates).assign(part="pulse")
     pulses["balance"] = [balance_position(CELL_MIDDLES, integral) for integral in integrals]
-    runs = zip(ensemble.runs, integrals, strict=True)
-    end_states = [end_state(run, integral) for run, integral in runs]
+    runs_with_integrals = zip(ensemble.runs, integrals, strict=True)
+    end_states = [end_state(run, integral) for run, integral in runs_with_integrals]
     pulses = pulses.join(pd.DataFrame(end_states))
 
+    # Part survival. The random walk of each pulse begins with its push at START.
     index_of_start = int(np.searchsorted(CELL_MIDDLES, START))
     pushes = np.array([push_at(integral, index_of_start) for integral in integrals])
     curve = survival(fates).assign(part="survival")
     curve["predicted"] = predicted_survival(curve["distance"].to_numpy(), pushes, parameters)
 
-    # Variance of the push per distance.
+    # Part ensemble, a single row. The diffusivity is the variance of the push per distance.
     variance_rate = diffusivity(parameters)
     row = {"part": "ensemble"} | death_rate(fates, START)
     # Distance over which the random walk of the push spreads by the mean push at START.
@@ -250,9 +258,11 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
 
 
 def velocity_numbers(alive: pd.DataFrame, variance_rate: float) -> dict[str, float]:
-    """Return the spread of the velocities of living pulses, and the spread by theory.
+    """Return the mean and the spread of the velocities of living pulses, and the spread by theory.
 
-    The velocity is half of the push. Its variance grows with distance like that of a random walk.
+    By theory the velocity is half of the push, and the variance of the push grows with distance
+    like that of a random walk. The result also has the number of cracks among the pulses, and the
+    median deviation of a velocity from the exact one (velocity_off).
 
     alive : rows of the part pulse, for the pulses that have not died
     variance_rate : variance of the push per distance, from `diffusivity`
@@ -330,14 +340,16 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     """Return the velocity of the right pulse at the end of its run, simulated and by theory.
 
     velocity : simulated velocity at the crest of the pulse, where it is largest
-    exact_velocity : half of the integral of the pre-stress from x_* to the position at which the
-        wave that meets the crest left the right front
-    is_crack : True if the blocks near the nucleation still slide
+    exact_velocity : half of the push where the wave that now meets the crest was sent out. This
+        wave left the right front there and has run to the left since.
+    is_crack : True if the blocks near the nucleation, at START, still slide
 
     The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
     crest = crest_position(run, integral)
-    integral_at_origin = float(np.interp(origin_on_front(run, crest), CELL_MIDDLES, integral))
+    origin_of_wave = origin_on_front(run, crest)
+    integral_at_origin = float(np.interp(origin_of_wave, CELL_MIDDLES, integral))
+    # The push is the integral from x_*, where the integral is smallest.
     push = integral_at_origin - integral[CELL_MIDDLES < 0.0].min()
     first_block_beyond_start = np.searchsorted(run["x"], START)
     return {
@@ -350,16 +362,18 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
 def crest_position(run: Recorded, integral: np.ndarray) -> float:
     """Return the position of the crest of the right pulse at the end of a run.
 
-    The crest is the wave that started to the right at x_* < 0, where the left front stopped and the
-    integral is smallest, when this front arrived. Waves move at speed 1.
+    The crest runs to the right at the wave speed, 1. It started at x_* < 0 when the left front
+    arrived there and stopped. At x_* the integral of the pre-stress is smallest.
+
+    integral : integral of the pre-stress up to each of CELL_MIDDLES
     """
     is_left = CELL_MIDDLES < 0.0
     x_star = float(CELL_MIDDLES[is_left][np.argmin(integral[is_left])])
     end_time = run.attrs["end_time"]
     # A block that was never released counts as released at the end.
     release_time = np.nan_to_num(run["release_time"], nan=end_time)
-    departure = float(np.interp(x_star, run["x"], release_time))
-    return x_star + end_time - departure
+    departure_time = float(np.interp(x_star, run["x"], release_time))
+    return x_star + end_time - departure_time
 
 
 def origin_on_front(run: Recorded, position: float) -> float:

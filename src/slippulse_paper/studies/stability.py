@@ -61,10 +61,11 @@ class StableFraction(NamedTuple):
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each scheme, order and damping ratio, with steps in units of dx.
 
-    derived : the derived limit
+    derived : the largest stable step, as derived
     measured, measured_rupture : the largest step at which no block sticks, for each of PROFILES
     measured_ratio, measured_rupture_ratio : this step divided by the derived limit
-    measured_limit, measured_rupture_limit : ``place`` of `StableFraction`
+    measured_limit, measured_rupture_limit : "within" if the step was found by bisection, "below" or
+        "above" if it is outside the searched range
     """
     schemes_and_orders = [("fixed_step", 1)]
     schemes_and_orders += [("localised", order) for order in ORDERS]
@@ -79,7 +80,12 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         }
         for name, prestress in PROFILES.items():
             is_stable_fraction = partial(
-                is_stable, prestress, derived, scheme, order, damping_ratio
+                is_stable,
+                derived_limit=derived,
+                prestress=prestress,
+                scheme=scheme,
+                order=order,
+                damping_ratio=damping_ratio,
             )
             fraction, place = largest_stable(is_stable_fraction)
             row[name] = derived * fraction
@@ -90,7 +96,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def largest_stable(is_stable_fraction: Callable[[float], bool]) -> StableFraction:
-    """Find the largest stable fraction of the derived limit by bisection of its logarithm."""
+    """Find the largest stable step by bisection of the logarithm of step/(derived limit).
+
+    is_stable_fraction : function that returns True if a run with this fraction of the derived limit
+        as its step is stable
+    """
     lower, upper = SMALLEST_FRACTION, LARGEST_FRACTION
     if not is_stable_fraction(lower):
         return StableFraction(lower, "below")
@@ -106,36 +116,39 @@ def largest_stable(is_stable_fraction: Callable[[float], bool]) -> StableFractio
 
 
 def is_stable(
+    fraction: float,
+    *,
+    derived_limit: float,
     prestress: Prestress,
-    derived: float,
     scheme: str,
     order: int,
     damping_ratio: float,
-    fraction: float,
 ) -> bool:
-    """Run a lattice with a fraction of the derived limit as step; return True if no block sticks.
+    """Return True if a run with a fraction of the derived limit as its step is stable.
 
-    The run ends at the first stick.
+    The run is stable if no block sticks. It is stopped soon after the first stick.
     """
-    step = fraction * derived
+    step = fraction * derived_limit
     scene = Scene(
         boundary="stress",
         prestress=prestress,
-        # When waves from the walls have crossed the blocks, these stick for a physical reason. The
-        # run ends before.
+        # When waves from the held walls have crossed the blocks, which takes a time of BLOCK_COUNT,
+        # blocks stick for a physical reason. The run ends before.
         duration=min(STEP_COUNT * step, 0.8 * BLOCK_COUNT),
         dx=1.0,
         gamma=0.0,
         beta=damping_ratio,
         release="total",
         scheme=scheme,
+        # A Scene refuses a step beyond the derived limit, so the step is only set below.
         max_step=1e-4,
         # The textbook scheme does not use the order, but a Scene needs one.
         order=max(order, 3),
     )
-    # A Scene refuses a step beyond the limit, so the step is set afterwards.
+    # A Scene is frozen, and this is how an attribute of it can be set without checks.
     object.__setattr__(scene, "max_step", step)
     lattice = LATTICES[scheme](scene, None, scene.beta)
+    # The lattice calls `stop_at_first_stick` each time after this number of steps.
     lattice.call_steps = CHECK_INTERVAL
 
     def stop_at_first_stick(_progress: float) -> None:
@@ -147,4 +160,5 @@ def is_stable(
         lattice.advance_to_end(stop_at_first_stick)
     except UnstableRun:
         return False
+    # A block may have stuck after the last call.
     return bool(lattice.tally.sticks == 0)

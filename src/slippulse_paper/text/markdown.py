@@ -54,10 +54,10 @@ def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
 
 
 def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
-    """Return HTML with MathML for each text, by the text. A text is one paragraph of Markdown.
+    """Return a mapping from each text, one paragraph of Markdown, to its HTML with MathML.
 
     HTML in a text is shown as text. A link is kept only if it leads to the web. A picture is
-    replaced by its alternative text.
+    replaced by its alternative text. An empty text has empty HTML.
     """
     texts = sorted({text for text in texts if text.strip()})
     if not texts:
@@ -99,6 +99,7 @@ def harmless(text: str) -> str:
     The result is one line, and safe in a page, in the report and in a cell of a table.
     """
     parts, end_of_last = [], 0
+    # KEPT finds formulas and web links, which stay as they are.
     for kept in KEPT.finditer(text):
         parts += [_escaped(text[end_of_last : kept.start()]), kept[0]]
         end_of_last = kept.end()

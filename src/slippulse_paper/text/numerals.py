@@ -36,6 +36,7 @@ def setting(value: float | None) -> str:
     """Write a number of the configuration with at most six digits, without zeros at its end."""
     if value is None or math.isnan(value):
         return MISSING
+    # The format g has at most six digits, and an exponent if the number is very small or large.
     return _power_of_ten(f"{value:g}")
 
 
@@ -70,6 +71,7 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
         return number(value, MAX_DIGITS) + unknown
     from uncertainties import ufloat
 
+    # The formats give the short form with parentheses (S) and powers of ten in Unicode (P).
     if value:
         magnitude = math.floor(math.log10(abs(value)))
         last_digit = 10.0 ** (magnitude + 1 - MAX_DIGITS_WITH_UNCERTAINTY)

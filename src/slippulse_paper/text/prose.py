@@ -23,8 +23,8 @@ class Prose(Environment):
         return None if obj is None else super().getitem(obj, argument)
 
 
-def _without_filter(value: object) -> object:
-    """Return the text of an expression whose value is not written by a filter.
+def _default_text(value: object) -> object:
+    """Return the value of an expression as it is written if no filter has turned it into a text.
 
     A number gets three significant digits, None becomes "not measured", and a text stays as it is.
     """
@@ -33,7 +33,7 @@ def _without_filter(value: object) -> object:
     return number(None) if value is None else value
 
 
-PROSE = Prose(undefined=StrictUndefined, finalize=_without_filter)
+PROSE = Prose(undefined=StrictUndefined, finalize=_default_text)
 PROSE.filters |= FILTERS
 
 

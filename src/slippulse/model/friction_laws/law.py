@@ -14,15 +14,15 @@ STEP_PER_GROWTH_TIME = 0.5
 
 
 class LawKink(NamedTuple):
-    """Friction that decreases linearly with slip or slip rate up to a kink, and is constant beyond.
+    """Friction that decreases linearly with its argument up to a kink, and is constant beyond.
 
-    In the comments below, "argument" is the slip since the release, or the slip rate.
+    The argument is the slip since the release, or the slip rate.
     """
 
-    rate: int  # order of the time derivative: 0 if the argument is the slip, 1 if it is slip rate
-    fall: float  # decrease of friction per unit of the argument, before the kink
-    end: float  # argument at the kink
-    lowest: float  # friction at the kink and beyond
+    argument_row: int  # 0 if the argument is the slip, 1 if it is the time derivative of slip
+    weakening_slope: float  # decrease of friction per unit of the argument, before the kink
+    argument_at_kink: float
+    friction_beyond: float  # friction at the kink and beyond
 
 
 class Traits(NamedTuple):

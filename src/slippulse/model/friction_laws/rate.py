@@ -67,14 +67,20 @@ class RateWeakening(Friction):
     def traits(self) -> Traits:
         """Kink at slip rate F/a, and a time step that resolves the growth of slip rate.
 
-        Friction drives slip by up to F. Below the kink, slip rate grows by a factor e in the
-        time 1/a.
+        Up to the kink, friction falls with slip rate by the slope a, and slip rate grows by a
+        factor e in the time 1/a. Beyond it friction is -F. Friction drives slip by up to F.
         """
+        # If a or F is 0, there is no friction.
         if self.slope * self.limit == 0.0:
             return Traits()
         kink_rate = self.limit / self.slope
         return Traits(
-            law_kink=LawKink(rate=1, fall=self.slope, end=kink_rate, lowest=-self.limit),
+            law_kink=LawKink(
+                argument_row=1,
+                weakening_slope=self.slope,
+                argument_at_kink=kink_rate,
+                friction_beyond=-self.limit,
+            ),
             max_drive=self.limit,
             longest_step=STEP_PER_GROWTH_TIME / self.slope,
         )

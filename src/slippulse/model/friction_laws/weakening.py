@@ -34,11 +34,16 @@ class SlipWeakening(Friction):
     def traits(self) -> Traits:
         """Kink at slip d_c, and a time step that resolves the growth of slip.
 
-        Slip grows by a factor e in the time sqrt(d_c). Steps that are too long for it give wrong
-        front speeds.
+        Up to the kink, friction falls with slip by the slope 1/d_c, and slip grows by a factor e in
+        the time sqrt(d_c). Longer steps give wrong front speeds. Beyond the kink friction is 0.
         """
         return Traits(
-            law_kink=LawKink(rate=0, fall=1.0 / self.d_c, end=self.d_c, lowest=0.0),
+            law_kink=LawKink(
+                argument_row=0,
+                weakening_slope=1.0 / self.d_c,
+                argument_at_kink=self.d_c,
+                friction_beyond=0.0,
+            ),
             nucleation_half_length=self.nucleation,
             longest_step=STEP_PER_GROWTH_TIME * math.sqrt(self.d_c),
         )

@@ -1,6 +1,6 @@
 """Panels that show the error of a quantity as a function of the cost of a run."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import matplotlib
 import numpy as np
@@ -23,10 +23,13 @@ FIRST_COLOUR, LAST_COLOUR = 0.9, 0.0
 BESIDE: Look = {"textcoords": "offset points", "path_effects": TEXT_OUTLINE}
 
 
-def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) -> pd.DataFrame:
-    """Return one row for each quantity and setting that a figure draws.
+def error_rows(
+    trade: pd.DataFrame, cost: str, cost_column_of: Callable[[str], str]
+) -> pd.DataFrame:
+    """Return the error and the cost of each quantity with the settings that a figure draws.
 
-    The column role is one of these:
+    A setting is a scheme with its order, time step and block spacing. It has one row for each of
+    these roles (column role) that it plays:
 
     textbook : a setting of the textbook scheme
     preset : a setting that is a preset
@@ -38,12 +41,14 @@ def error_rows(trade: pd.DataFrame, cost: str, column_of: Callable[[str], str]) 
     ----------
     trade : errors and costs of all settings, from the study accuracy_cost
     cost : name of the column with the cost in the result, such as "work"
-    column_of : function that returns the column of ``trade`` with the cost for a quantity
+    cost_column_of : function of the name of a quantity; it returns the name of the column of
+        ``trade`` with the cost of this quantity
     """
     settings = trade[["scheme", "order", "step", "dx", "preset"]]
     parts = []
-    for name in QUANTITIES:
-        rows = settings.assign(quantity=name, error=trade[name], **{cost: trade[column_of(name)]})
+    for quantity in QUANTITIES:
+        rows = settings.assign(quantity=quantity, error=trade[quantity])
+        rows[cost] = trade[cost_column_of(quantity)]
         rows = rows.sort_values(cost, kind="stable")
         roles = {
             "textbook": rows[rows["scheme"] == "fixed_step"],
@@ -63,11 +68,9 @@ def _smallest_error_of_cheaper(rows: pd.DataFrame) -> pd.Series:
 
     rows : settings in the order of their cost
     """
-    order_columns = ["scheme", "order"]
-    # The smallest error up to and including a row.
-    smallest_so_far = rows.groupby(order_columns)["error"].transform("cummin")
-    by_order = smallest_so_far.groupby([rows[name] for name in order_columns])
-    return by_order.shift(fill_value=np.inf)
+    errors_by_order = rows.groupby(["scheme", "order"])["error"]
+    # The cumulative minimum includes the row itself. The shift moves it to the next row.
+    return errors_by_order.transform(lambda errors: errors.cummin().shift(fill_value=np.inf))
 
 
 def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_label: str) -> None:
@@ -81,45 +84,50 @@ def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_lab
         rows = table[table["quantity"] == quantity]
         _draw_frontiers(axes, rows, cost)
         textbook, presets = (rows[rows["role"] == role] for role in ("textbook", "preset"))
-        look: Look = {"color": BLACK, "label": "textbook scheme"}
-        axes.plot(textbook[cost], textbook["error"], "x", **look)
-        look = {"color": ORANGE, "label": "presets"}
-        axes.plot(presets[cost], presets["error"], "o", **look)
-        for preset in presets.to_dict("records"):
-            axes.annotate(preset["preset"], (preset[cost], preset["error"]), (4, 5), **BESIDE)
+        axes.plot(textbook[cost], textbook["error"], "x", color=BLACK, label="textbook scheme")
+        axes.plot(presets[cost], presets["error"], "o", color=ORANGE, label="presets")
+        for _, row in presets.iterrows():
+            axes.annotate(row["preset"], (row[cost], row["error"]), (4, 5), **BESIDE)
         lattices = rows[rows["role"] != "exact"]
         axes.set(xscale="log", yscale="log", xlabel=axis_label)
         axes.set(ylabel=f"relative error of {title}", title=boundary)
         # The names of the presets and the error of the exact solution need some room.
         axes.set_ylim(0.2 * lattices["error"].min(), 2.5 * lattices["error"].max())
-        (exact,) = rows[rows["role"] == "exact"].to_dict("records")
+        exact = rows[rows["role"] == "exact"].iloc[0]
         if np.isfinite(exact[cost]):
-            _draw_exact(axes, exact, cost)
+            _draw_exact(axes, exact[cost], exact["error"])
 
 
 def _draw_frontiers(axes: Axes, rows: pd.DataFrame, cost: str) -> None:
-    """Draw the smallest error at a cost, for each order and for the textbook scheme, as steps."""
-    frontier, end = rows[rows["role"] == "frontier"], rows[cost].max()
+    """Draw as steps the smallest error that can be reached up to a cost.
+
+    The localised scheme has one coloured line for each order, and the textbook scheme one thin
+    black line.
+    """
+    frontier = rows[rows["role"] == "frontier"]
     orders = sorted(frontier.loc[frontier["scheme"] == "localised", "order"].unique())
     shades = np.linspace(FIRST_COLOUR, LAST_COLOUR, len(orders))
     colours = dict(zip(orders, matplotlib.colormaps[ORDER_MAP](shades), strict=True))
-    for (scheme, order), part in frontier.groupby(["scheme", "order"]):
-        # The last step extends to the largest cost, since a larger cost need not have a larger
-        # error.
-        part = pd.concat([part, part.tail(1).assign(**{cost: end})])
+    for (scheme, order), line in frontier.groupby(["scheme", "order"]):
+        # The last step extends to the largest cost, at which its error can be reached as well.
+        end = line.tail(1).assign(**{cost: rows[cost].max()})
+        line = pd.concat([line, end])
+        # In the legend, the textbook scheme has the crosses that `draw_errors` draws.
         look: Look = {"color": BLACK, "linewidth": 0.6}
         if scheme == "localised":
             look = {"color": colours[order], "label": f"order {order:.0f}"}
-        axes.plot(part[cost], part["error"], drawstyle="steps-post", **look)
+        axes.plot(line[cost], line["error"], drawstyle="steps-post", **look)
 
 
-def _draw_exact(axes: Axes, exact: Mapping, cost: str) -> None:
+def _draw_exact(axes: Axes, cost: float, error: float) -> None:
     """Draw a vertical line at the cost of the exact solution, and write its error beside the line.
 
-    The error is too small for the panel.
+    The error is written because it lies below the panel.
     """
-    axes.axvline(exact[cost], color=BLUE, linewidth=0.9, label="exact solution")
-    digit, exponent = f"{exact['error']:.0e}".split("e")
+    axes.axvline(cost, color=BLUE, linewidth=0.9, label="exact solution")
+    # An error of 2e-13 is written as 2 x 10^-13.
+    digit, exponent = f"{error:.0e}".split("e")
     text = rf"error ${digit} \times 10^{{{int(exponent)}}}$"
     look = BESIDE | {"color": BLUE, "fontsize": SMALL_TEXT, "ha": "right"}
-    axes.annotate(text, (exact[cost], axes.get_ylim()[0]), (-3, 4), **look)
+    bottom, _ = axes.get_ylim()
+    axes.annotate(text, (cost, bottom), (-3, 4), **look)

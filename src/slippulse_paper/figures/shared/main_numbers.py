@@ -61,45 +61,49 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
 
 
 def at_constant_levels(run: pd.Series) -> pd.Series:
-    """Return the numbers of a run, with NaN for steady theory where it does not apply.
+    """Return the numbers of a run, with NaN for predictions of steady theory that do not apply.
 
-    For a table of pre-stress, the theory assumes the constant levels at its ends. It does not apply
-    to a front that has not reached a constant level.
+    The theory of a side assumes that its front runs in a constant pre-stress. If the pre-stress is
+    given as a table, the front may not have reached a constant level.
     """
     run = run.copy()
     for side, prefixes in PREDICTION_PREFIXES.items():
-        # Only pre-stress tables have this column. It is NaN if the level ahead varies.
-        level_ahead = run.get(f"level_ahead_{side}", 0.0)
-        if not np.isfinite(level_ahead):
-            predictions = [name for name in map(str, run.index) if name.startswith(prefixes)]
-            run[predictions] = np.nan
+        # Only runs with a table of pre-stress have this number. It is NaN if the pre-stress varies
+        # ahead of the front.
+        column = f"level_ahead_{side}"
+        if column in run and np.isnan(run[column]):
+            is_prediction = run.index.astype(str).str.startswith(prefixes)
+            run[is_prediction] = np.nan
     return run
 
 
 def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     """Return `main_numbers` of a scene, with the uncertainty of each number.
 
-    If the scene has a promised accuracy, the result also has the columns promised and kept of
-    `slippulse.measurement.promise`.
+    Theory that does not apply to the scene is NaN. A transition that is not defined and a time that
+    would be repeated are left out. If the scene has a promised accuracy, the result also has the
+    columns promised and kept of `slippulse.measurement.promise`.
 
     run : measured and predicted numbers
     study : the grid study of the scene, with one row for each quantity
     """
     numbers = main_numbers(run)
     quantity = numbers["quantity"]
-    # The theory of steady pulses applies only to a steady pulse.
+    # Steady theory gives the numbers of a steady pulse, and the speed of a front that still runs.
     if run.get("pulse_state") != "steady":
         numbers.loc[quantity.str.startswith("pulse"), "theory"] = np.nan
     if run.get("pulse_state") == "stopped":
         numbers.loc[quantity == "front_speed_right", "theory"] = np.nan
+    left_out = []
     # Under a stress boundary, the balance position defines the transition. It is computed without
     # the bumps of the pre-stress, so the transition of a scene with bumps is left out.
     has_bumps = bool(json.loads(run["steps_and_bumps"])["bumps"])
     if has_bumps and run["boundary"] == "stress":
-        numbers = numbers[~quantity.str.startswith("transition")]
-    # The time of the first stick is left out if it is already in the table as the transition time.
+        left_out += ["transition_time", "transition_length"]
+    # If the displacement is held, the transition is at the first stick, so both times are equal.
     if (quantity == "transition_time").any():
-        numbers = numbers[quantity != "first_stick_time"]
+        left_out.append("first_stick_time")
+    numbers = numbers[~quantity.isin(left_out)]
     promise_columns = [name for name in ("promised", "kept") if name in study]
     numbers = numbers.merge(study[["quantity", "uncertainty", *promise_columns]], on="quantity")
     return numbers[["quantity", "label", "value", "uncertainty", "theory", *promise_columns]]
@@ -108,20 +112,21 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
 def numbers_in_si(numbers: pd.DataFrame, run: pd.Series, layer: Layer) -> pd.DataFrame:
     """Return the numbers of a scene in SI units, with two more columns.
 
-    unit : the unit of the number, with a suitable prefix
-    paper : the number by the formula that the paper prints with dimensions
+    unit : the unit of the number, with a suitable prefix such as "mm"
+    paper : the number by the formula that the paper prints with dimensions; NaN if there is none
 
     Parameters
     ----------
     numbers : table from `scene_numbers`
-    run : measured and predicted numbers
+    run : measured and predicted numbers, without dimensions
     """
     paper = [run.get(f"paper_{quantity}", math.nan) for quantity in numbers["quantity"]]
     converted = numbers.assign(unit="", paper=np.array(paper, dtype=float))
-    # For the peak slip velocity, the formula with dimensions (section IV A) gives half of the value
-    # of the formula without dimensions.
+    # The paper's formulas without and with dimensions agree, except for the peak slip velocity. For
+    # this one, the formula with dimensions (section IV A) gives half of the other one.
     converted.loc[converted["quantity"] == "pulse_peak_velocity", "paper"] *= 0.5
     for index, row in converted.iterrows():
+        # The physical quantity, such as a length, decides the SI unit.
         quantity = QUANTITIES[str(row["quantity"])]
         unit = readable_unit(quantity, layer.convert_to_si(row["value"], quantity))
         for column in ("value", "uncertainty", "theory", "paper"):

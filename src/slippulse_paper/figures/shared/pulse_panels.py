@@ -13,7 +13,7 @@ from slippulse.data.point import point
 from slippulse.measurement.pulses import comoving, leading_pulse
 from slippulse.model.prestress import Prestress
 from slippulse.plotting import style
-from slippulse.plotting.selection import spread_values
+from slippulse.plotting.selection import spaced_indices, spread_values
 from slippulse.plotting.style import (
     BLACK,
     LEVEL_COLUMNS,
@@ -39,7 +39,7 @@ FIELDS = {
 }
 DISTANCE_LABELS = {"displacement": r"$\chi$ / paper's width", "stress": r"$\chi/W$"}
 # The column that decides the line style of a run. The level of the pre-stress decides its colour.
-STYLED_COLUMN = {"displacement": "damping_ratio", "stress": "width"}
+LINE_STYLE_COLUMNS = {"displacement": "damping_ratio", "stress": "width"}
 LINE_STYLES = ("-", "--", ":", "-.")
 # Number of drawn levels of the pre-stress.
 LEVEL_COUNT = {"displacement": 2, "stress": 3}
@@ -59,28 +59,27 @@ def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     `frame_of_pulse` describes the units.
     """
     window = settings["measure"]["front_window"]
-    # The exact profile of each run.
-    profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
+    exact_profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
     parts = []
-    # A sweep has one boundary condition.
     for name, sweep in data.items():
         runs = tables[name]
+        # All runs of a sweep have the same boundary condition.
         boundary = str(runs["boundary"].iloc[0])
         drawn_levels = spread_values(runs["left"], LEVEL_COUNT[boundary])
         runs = runs[runs["left"].isin(drawn_levels)]
-        # A pulse that is not steady counts as flagged. Under a stress boundary, pulses have no such
-        # state ("none").
+        # A pulse that is not steady counts as flagged, and its state is the flag. Under a stress
+        # boundary, pulses have the state "none".
         is_steady = runs["pulse_state"].isin(["steady", "none"])
         flags = runs["run_flags"].where(is_steady, runs["pulse_state"])
         rows = [runs[PARAMETERS].assign(role="run", run=runs.index, run_flags=flags)]
-        for index, numbers in runs.iterrows():
-            exact = profiles.get_group((name, index)).assign(role="exact")
+        for run_number, numbers in runs.iterrows():
+            exact = exact_profiles.get_group((name, run_number))
             frame = frame_of_pulse(boundary, numbers, exact)
-            simulated = simulated_profile(point(sweep, int(index)), window, frame)
-            points = pd.concat([simulated.assign(role="simulation"), exact])
-            curves = (points[["x", *FIELDS]] / frame.units).round(VISIBLE_DECIMALS)
-            curves.insert(0, "role", points["role"])
-            rows.append(curves.assign(run=index))
+            simulated = simulated_profile(point(sweep, int(run_number)), window, frame)
+            for role, profile in (("simulation", simulated), ("exact", exact)):
+                curve = (profile[["x", *FIELDS]] / frame.units).round(VISIBLE_DECIMALS)
+                curve.insert(0, "role", role)
+                rows.append(curve.assign(run=run_number))
         parts.append(pd.concat(rows).assign(panel=boundary))
     return pd.concat(parts, ignore_index=True)
 
@@ -89,62 +88,77 @@ class PulseFrame(NamedTuple):
     """The range in which a simulated pulse is drawn, and the units of its curves.
 
     begin, end : first and last drawn distance from the front; distances are negative behind it
-    units : units of x and of each of FIELDS
+    units : the unit of x and of each of FIELDS, by name
     """
 
     begin: float
     end: float
-    units: list[float]
+    units: pd.Series
 
 
 def frame_of_pulse(boundary: str, numbers: pd.Series, exact: pd.DataFrame) -> PulseFrame:
     """Return the drawn range and the units of one pulse.
 
-    Under a displacement boundary, the units are width, slip, peak velocity and acceleration of the
-    pulse by the paper's formulas. Under a stress boundary, the unit of length is the width of the
-    Gaussian. The units of slip and velocity are the largest values of the exact pulse far from the
-    nucleation. The exact acceleration has no largest value, so its unit is that of velocity divided
-    by that of length.
+    Under a displacement boundary, the units are the pulse width, slip, peak velocity and
+    acceleration by the paper's formulas. Under a stress boundary, the unit of length is the width
+    of the Gaussian. The units of slip and velocity are the largest values of the exact pulse far
+    from the nucleation. The exact acceleration has no largest value, so its unit is that of
+    velocity divided by that of length.
 
     numbers : measured and predicted numbers of the run
     exact : profile of the exact pulse
     """
     if boundary == "displacement":
         length = numbers["exact_pulse_width"]
-        names = ("width", "slip", "peak_velocity", "acceleration")
-        units = [numbers[f"paper_pulse_{name}"] for name in names]
-        return PulseFrame(-(1.0 + MARGIN_BEHIND) * length, MARGIN_AHEAD * length, units)
-    # This pulse has a long tail, which is drawn as far as the exact profile has it.
-    length = float(np.ptp(exact["x"]))
-    width, peak_velocity = numbers["width"], numbers["exact_largest_velocity"]
-    units = [width, exact["slip"].max(), peak_velocity, peak_velocity / width]
-    return PulseFrame(-length, MARGIN_AHEAD * length, units)
+        begin = -(1.0 + MARGIN_BEHIND) * length
+        units = {
+            "x": numbers["paper_pulse_width"],
+            "slip": numbers["paper_pulse_slip"],
+            "slip_velocity": numbers["paper_pulse_peak_velocity"],
+            "slip_acceleration": numbers["paper_pulse_acceleration"],
+        }
+    else:
+        # The pulse is drawn over the length of its exact profile.
+        length = float(np.ptp(exact["x"]))
+        begin = -length
+        gaussian_width, largest_velocity = numbers["width"], numbers["exact_largest_velocity"]
+        units = {
+            "x": gaussian_width,
+            "slip": exact["slip"].max(),
+            "slip_velocity": largest_velocity,
+            "slip_acceleration": largest_velocity / gaussian_width,
+        }
+    return PulseFrame(begin, MARGIN_AHEAD * length, pd.Series(units, dtype=float))
 
 
 def simulated_profile(run: xr.Dataset, window: float, frame: PulseFrame) -> pd.DataFrame:
     """Return the right pulse at the end of a run: the columns of FIELDS as functions of x.
 
-    x is the position relative to the peak of the slip velocity.
+    x is the position relative to the peak of the slip velocity. Only blocks inside the frame are
+    kept, and of these at most CURVE_POINTS.
 
     window : the last fraction of the front's path, from which its speed is measured
     """
     pulse = leading_pulse(run, window)
-    # xi is the position relative to the front.
-    profile = pd.DataFrame(comoving(run, pulse))
-    in_frame = profile[profile["xi"].between(frame.begin, frame.end)]
-    stride = int(np.ceil(len(in_frame) / CURVE_POINTS))
-    drawn = in_frame.iloc[::stride]
-    peak_xi = pulse.peak_distance - pulse.front
-    return drawn.assign(x=drawn["xi"] - peak_xi)
+    # The column xi has the position relative to the front.
+    blocks = pd.DataFrame(comoving(run, pulse))
+    in_frame = blocks[blocks["xi"].between(frame.begin, frame.end)]
+    kept = in_frame.iloc[spaced_indices(len(in_frame), CURVE_POINTS)]
+    peak_relative_to_front = pulse.peak_distance - pulse.front
+    return kept.assign(x=kept["xi"] - peak_relative_to_front)
 
 
 def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs of one boundary condition, each with a colour and a line style (dashes)."""
+    """Return the runs of one boundary condition, with their looks in the columns colour and dashes.
+
+    The colour depends on the level on the left. The line style (dashes) depends on the damping
+    ratio under a displacement boundary, and on the width of the Gaussian under a stress boundary.
+    """
     boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
-    styled_values = runs[STYLED_COLUMN[boundary]]
-    style_of_value = dict(zip(np.sort(styled_values.unique()), LINE_STYLES, strict=False))
-    colours = [*style.colour(LEVEL_COLUMNS[boundary], runs["left"])]
-    return runs.assign(colour=colours, dashes=styled_values.map(style_of_value))
+    colours = list(style.colour(LEVEL_COLUMNS[boundary], runs["left"]))
+    values = runs[LINE_STYLE_COLUMNS[boundary]]
+    dashes_of_value = dict(zip(np.sort(values.unique()), LINE_STYLES, strict=False))
+    return runs.assign(colour=colours, dashes=values.map(dashes_of_value))
 
 
 def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
@@ -165,33 +179,39 @@ def draw_pulses(axes: Axes, table: pd.DataFrame, field: str) -> None:
 
 
 def plot_fields(table: pd.DataFrame) -> Figure:
-    """Draw figure 8 or 9: the three fields of the pulses of one boundary condition."""
+    """Draw figure 8 or 9: the three fields of the pulses of one boundary condition.
+
+    table : the rows of `pulse_table` for this boundary condition (column panel)
+    """
     figure, panels = style.new_panels(PAGE_WIDTH, 2.8, "abc")
+    _, velocity_axes, acceleration_axes = panels
     for axes, field in zip(panels, FIELDS, strict=True):
         draw_pulses(axes, table, field)
-    panels[1].set_title(title(table), loc="center")
+    velocity_axes.set_title(title(table), loc="center")
     if table["panel"].iloc[0] == "displacement":
         # The undamped lattice oscillates at the front with a larger amplitude than theory has.
-        panels[2].set_ylim(-1.3, 1.3)
+        acceleration_axes.set_ylim(-1.3, 1.3)
     else:
-        # The inset stands where slip and velocity are small.
-        draw_prestress(panels[1], (0.09, 0.66, 0.33, 0.22), styled_runs(table), 5.0)
+        # The inset stands where the velocity is small.
+        box = (0.09, 0.66, 0.33, 0.22)
+        draw_prestress(velocity_axes, box, styled_runs(table), half_length_in_widths=5.0)
         # The exact acceleration has no bound at the front.
-        panels[2].set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
-    style.legend_below(figure, handles(table), 6)
+        acceleration_axes.set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
+    style.legend_below(figure, legend_entries(table), 6)
     return figure
 
 
-def handles(table: pd.DataFrame) -> list[Line2D]:
+def legend_entries(table: pd.DataFrame) -> list[Line2D]:
     """Return the legend entries of one boundary condition: colours, line styles, simulation."""
     runs, boundary = styled_runs(table), table["panel"].iloc[0]
     level_symbol = SYMBOLS[LEVEL_COLUMNS[boundary]]
-    styled = STYLED_COLUMN[boundary]
+    line_style_column = LINE_STYLE_COLUMNS[boundary]
     entries = []
     for run in runs.drop_duplicates("left").sort_values("left").itertuples():
         entries.append(entry(f"${level_symbol} = {run.left:g}$", color=run.colour))
-    for _, run in runs.drop_duplicates(styled).sort_values(styled).iterrows():
-        name = f"exact, ${SYMBOLS[styled]} = {run[styled]:g}$"
+    one_run_per_style = runs.drop_duplicates(line_style_column).sort_values(line_style_column)
+    for _, run in one_run_per_style.iterrows():
+        name = f"exact, ${SYMBOLS[line_style_column]} = {run[line_style_column]:g}$"
         entries.append(entry(name, color=BLACK, linestyle=run["dashes"]))
     return [*entries, entry("simulation", color=BLACK, **SIMULATION_LOOK)]
 
@@ -208,17 +228,19 @@ def title(table: pd.DataFrame) -> str:
     return rf"{style.conditions(has_springs)}, ${SYMBOLS[column]} = {values}$"
 
 
-def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length: float) -> None:
-    """Draw the pre-stress of some runs in an inset.
+def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length_in_widths: float) -> None:
+    """Add an inset to a panel that shows the pre-stress of some runs as a function of position.
 
+    box : place of the inset in the panel
     runs : the runs, with their colours in the column colour
-    half_length : the inset shows the positions from -half_length to half_length, in widths of the
-        widest Gaussian
+    half_length_in_widths : half of the drawn length, in widths of the widest Gaussian
     """
     inset = style.small_inset(axes, box, r"pre-stress $\tau(x)$")
-    # Tables of pre-stress without a Gaussian have no width.
+    # A pre-stress that is given as a table without a Gaussian has no width, and is not drawn.
     runs = runs[np.isfinite(runs["width"])]
-    x = np.linspace(-half_length, half_length, 161) * runs["width"].max()
+    in_widths = np.linspace(-half_length_in_widths, half_length_in_widths, 161)
+    x = in_widths * runs["width"].max()
+    # Runs that differ only in other parameters have the same pre-stress, which is drawn once.
     for run in runs.drop_duplicates(["left", "right", "width"]).itertuples():
         tau = Prestress(run.left, run.right, run.width)(x)
         inset.plot(x, tau, color=run.colour, linewidth=0.8)

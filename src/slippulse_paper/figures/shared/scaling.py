@@ -58,11 +58,12 @@ def with_uncertainties(tables: dict[str, pd.DataFrame], name: str) -> pd.DataFra
     tables : measured tables by name, and grid studies as "uncertainties/NAME"
     name : name of the sweep
     """
-    grid_study = tables[f"uncertainties/{name}"].set_index(["quantity", "point"])
+    grid_study = tables[f"uncertainties/{name}"]
     runs = tables[name].copy()
     for quantity in QUANTITIES:
-        uncertainties = grid_study["uncertainty"].xs(f"transition_{quantity}")
-        runs[f"uncertainty_transition_{quantity}"] = uncertainties.to_numpy()
+        # A grid study has one row for each run and measured number, in the order of the runs.
+        rows = grid_study[grid_study["quantity"] == f"transition_{quantity}"]
+        runs[f"uncertainty_transition_{quantity}"] = rows["uncertainty"].to_numpy()
     return runs
 
 
@@ -143,15 +144,15 @@ def _scatter(
 ) -> None:
     """Draw one marker for each run: in its colours, or open and grey if the run is flagged.
 
+    colours : one colour for each run: of the face of its marker (c), and of its rim (edgecolors)
     sizes : size and line width of the markers
     """
     look: Look = {"s": 9.0, "linewidths": 0.0, "edgecolors": "white", "zorder": 3} | sizes
-    is_flagged = runs["run_flags"].notna()
+    is_flagged = runs["run_flags"].notna().to_numpy()
     grey: Look = {"facecolors": "none", "edgecolors": GREY, "linewidths": 0.6}
     axes.scatter(x[is_flagged], y[is_flagged], **look | grey)
-    is_sound = ~is_flagged.to_numpy()
-    own_colours: Look = {name: values[is_sound] for name, values in colours.items()}
-    axes.scatter(x[is_sound], y[is_sound], gid="runs", **look | own_colours)
+    unflagged_colours = {argument: values[~is_flagged] for argument, values in colours.items()}
+    axes.scatter(x[~is_flagged], y[~is_flagged], gid="runs", **look | unflagged_colours)
 
 
 def damping_figure(table: pd.DataFrame) -> Figure:
@@ -161,18 +162,21 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     a few levels of the pre-stress.
     """
     boundary = table["boundary"].iloc[0]
-    # The columns of the level (tau_0 or left) and of the second varying parameter (gamma or width).
+    # The level is called tau_0 if it is the same on both sides, and left otherwise. The second
+    # varying parameter is gamma or width.
     level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
-    ratios = np.sort(table["damping_ratio"].unique())
     table = table.assign(**{level_column: table["left"]}).sort_values("damping_ratio")
     # The insets show a few levels, at a middle value of the second parameter.
     middle = spread_values(table[second_column], LINE_COUNT)[1]
     drawn_levels = spread_values(table["left"], LINE_COUNT)
-    few_runs = table[(table[second_column] == middle) & table["left"].isin(drawn_levels)]
+    runs_of_insets = table[(table[second_column] == middle) & table["left"].isin(drawn_levels)]
     colours = {"c": style.colour("damping_ratio", table["damping_ratio"])}
     spacing = table["dx"] / table["width"]
     title = style.conditions(boundary == "displacement")
     title += rf", $\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
+    # The first damping ratio is 0.
+    ratios = np.sort(table["damping_ratio"].unique())
+    smallest_positive, largest = ratios[1], ratios[-1]
     ticks = ratios[::2] if len(ratios) > 4 else ratios
     figure, panels = style.new_panels(PAGE_WIDTH, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
@@ -180,11 +184,11 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         axes.set_title(title, loc="center")
         # The runs lie above the line of equality, so that the lower right corner is free.
         box = (0.52, 0.12, 0.26, 0.29)
-        inset = ratio_inset(axes, box, few_runs, quantity, "damping_ratio", level_column)
-        # The scale is linear near 0, because there are runs without damping.
-        inset.set_xscale("symlog", linthresh=ratios[1], linscale=0.5)
+        inset = ratio_inset(axes, box, runs_of_insets, quantity, "damping_ratio", level_column)
+        # A logarithmic scale has no place for 0, so the scale is linear near 0.
+        inset.set_xscale("symlog", linthresh=smallest_positive, linscale=0.5)
         style.few_ticks(inset.xaxis, ticks)
-        inset.set_xlim(-0.4 * ratios[1], 1.7 * ratios[-1])
+        inset.set_xlim(-0.4 * smallest_positive, 1.7 * largest)
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
