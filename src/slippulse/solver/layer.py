@@ -320,7 +320,8 @@ def advance_node(elastic, fields, fault, i, dt, time):
     distance = 0.5 * dt * (velocity_before + velocity)
     if elastic.is_mirrored and i == 1:
         distance *= 0.5
-    # The friction that acted follows from the change of velocity, also when the node sticks.
+    # The friction that acted follows from the change of velocity, also when the node sticks. The
+    # two numbers in ``work`` are the work of the pre-stress, and its work minus that of friction.
     friction = load - (velocity - velocity_before) / (2.0 * elastic.ratio)
     fault.work[0] += abs(fault.tau[i]) * distance
     fault.work[1] += (fault.tau[i] - friction) * distance
@@ -348,9 +349,10 @@ def add_damping(elastic, earlier, fields, total, first, last):
 def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
     """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach.
 
-    damped_fields : the fields, those of the step before, and those with damping in the stresses
-    columns : position of x = 0, and numbers of columns on each side that are advanced
+    damped_fields : `DampedFields`, which share the velocities but not the stresses
+    columns : `Columns`, which limit the range that is advanced
     """
+    # The stresses of the strain, those of the step before, and those that include damping.
     fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
@@ -373,6 +375,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
     The slip and v_x are returned in units of ``slip_scale``, without the outermost columns.
     """
+    # The time step, and the grid along x.
     h = 1.0 / scene.cells
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
@@ -390,8 +393,9 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     columns = Columns(centre, nucleation_columns, trail_columns)
     damped = damped_fields(elastic, fields)
     advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
-    # The energy is balanced at the time of the velocities that are copied here. The stresses are
-    # needed half a step before and half a step after this time.
+    # The energy is computed at the time of the velocities that are copied here. This needs the
+    # stresses half a step before, which are copied as well, and those half a step after, which the
+    # last step computes.
     earlier = Fields._make(array.copy() for array in fields)
     work_of_prestress, work_without_friction = fault.work.tolist()
     advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
@@ -459,6 +463,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
+    time_step = ratio / scene.cells
     # With these types, the kernel computes in the precision of the fields.
     number_type = scene.number_type
     return Elastic(
@@ -469,7 +474,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
-        damping=number_type(scene.beta / (ratio / scene.cells)),
+        damping=number_type(scene.beta / time_step),
         above=above.astype(number_type),
         below=below.astype(number_type),
         direct=np.where(normal, 1.0, 1.0 - lateral**2).astype(number_type),
@@ -527,8 +532,9 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes = columns.copy()
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
-    # The strain energy of normal stresses in plane strain, with 1 - gamma as ``lateral``, and that
-    # of shear stress. The square of a stress is its earlier value times its later value.
+    # The strain energy of normal stresses in plane strain, and that of shear stress. The square of
+    # a stress is its earlier value times its later value. Here lateral is 1 - gamma, the value of
+    # all rows except a free top, where it is 0.
     lateral = elastic.lateral.max()
     equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
     mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx
