@@ -90,8 +90,8 @@ def _values(name: str, value: Any) -> list:
     is_sequence = isinstance(value, list | tuple | range | np.ndarray)
     if not is_sequence or name in SINGLE_PROFILE_NAMES:
         return [value]
-    # Elements of an array are converted to Python numbers.
-    values = value.tolist() if isinstance(value, np.ndarray) else list(value)
+    # Elements of an array are converted to Python numbers. An array may be a single number.
+    values = np.atleast_1d(value).tolist() if isinstance(value, np.ndarray) else list(value)
     check_that(len(values) > 0, name, value, "a value, or a list of at least one")
     return values
 
