@@ -102,10 +102,9 @@ def _scenes(lists: dict[str, list]) -> Iterator[Scene]:
     lists : the values of each parameter by its name
     """
     profile_names = [name for name in lists if name in PROFILE_NAMES]
-    has_both = "prestress" in lists and bool(profile_names)
-    check_that(
-        not has_both, "prestress", profile_names, "prestress, or left, right, width and peak"
-    )
+    if "prestress" in lists and profile_names:
+        allowed = "prestress, or left, right, width and peak, but not both"
+        raise ValueError(f"prestress: given with {', '.join(profile_names)}; allowed: {allowed}")
     for combination in product(*lists.values()):
         values = dict(zip(lists, combination, strict=True))
         if profile_names:

@@ -10,6 +10,11 @@ are found by Newton's method.
 All times are counted from the start of the step: ``now`` is the time from which on events are
 searched for, and ``step_end`` is the end of the step. ``top`` is the order of the highest time
 derivative of slip that the step has computed.
+
+Arguments such as ``medium``, ``motion`` and ``prediction`` are groups of numbers and arrays, which
+`arrays` defines. Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its
+columns are blocks. Segment r of sliding blocks begins with the block ``edges[2 r]`` and ends before
+the block ``edges[2 r + 1]``.
 """
 
 import math

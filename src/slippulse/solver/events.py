@@ -15,7 +15,9 @@ step, so only a few blocks change, and they change exactly as in a new expansion
 lattice.
 
 All times are counted from the start of the step: ``now`` is the time of the event, and ``step_end``
-is the end of the step. ``top`` is the order of the highest time derivative of slip.
+is the end of the step. ``top`` is the order of the highest time derivative of slip. Arguments such
+as ``medium`` and ``motion`` are groups of numbers and arrays, which `arrays` defines. Row k of
+``w``, which is ``motion.derivatives``, is time derivative k of slip; its columns are blocks.
 """
 
 import numpy as np

@@ -3,7 +3,8 @@
 Each step computes the forces, advances the velocities with them, and then the slip with the new
 velocities. A block is released or stopped at the step at which its stress or velocity passes the
 threshold. The scheme is of first order in the step. Its front speed can lock to dx/(n dt) with an
-integer n.
+integer n. Arguments such as ``medium``, ``motion`` and ``tally`` are groups of numbers and arrays,
+which `arrays` defines.
 """
 
 import math

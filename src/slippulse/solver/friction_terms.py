@@ -5,6 +5,10 @@ dissipation is part of the viscous loss. Piecewise linear friction falls with th
 of a block until it reaches a kink, beyond which friction is constant. Passing the kink, in either
 direction, is an event. Kernels are compiled separately for laws with a kink: where ``law_kink`` is
 None, the functions below are empty and cost nothing.
+
+The groups of numbers and arrays ``medium``, ``motion`` and ``segments`` are defined in `arrays`.
+Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its columns are
+blocks.
 """
 
 from typing import NamedTuple

@@ -241,6 +241,8 @@ class Lattice:
         status : reason why the kernel stopped: BLOWN_UP or STEPS_DONE
         time_advanced : simulated time of the call
         """
+        # Steps that end early are shorter than the others. If they are this short on average, the
+        # same blocks have events again and again at one instant.
         shortest_step = taylor.SIMULTANEITY_TOLERANCE * limits.largest_step
         if status == arrays.BLOWN_UP:
             reason = "slip velocity is not finite or larger than the pre-stress can drive"

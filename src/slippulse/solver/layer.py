@@ -18,6 +18,9 @@ Here h is the side of a square cell. The left column of the scheme is at x = i h
 half a cell further. Rows lie at y = j h from the bottom to the top, and the two outer rows have
 half the height of a cell. Velocities are known half a time step before and after the stresses. The
 scheme conserves a discrete energy, so the energy that friction dissipates is exact to rounding.
+
+The kernels get the constants of the layer (``elastic``), its velocities and stresses (``fields``,
+with rows j and columns i), and the state of the nodes at its bottom (``fault``).
 """
 
 import math
@@ -209,6 +212,7 @@ def update_stresses(elastic, fields, first, last):
             dvy_dy = weight_above * above[i] - weight_below * below[i]
             s_xx[i] += direct * dvx_dx + lateral * dvy_dy
             s_yy[i] += lateral * dvx_dx + normal * dvy_dy
+        # Column 0 is a mirror image, in which s_xx has the opposite sign.
         if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
     # s_xy, which lies half a cell above row j.
@@ -239,6 +243,7 @@ def update_velocities(elastic, fields, first, last):
         v = vy[j, first:last]
         for i in range(v.shape[0]):
             v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
+        # Column 0 is a mirror image, in which v_y has the opposite sign.
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
     # v_x on the rows above the bottom. A top row that moves has only the s_xy below it.

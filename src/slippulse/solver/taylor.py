@@ -13,6 +13,11 @@ therefore cheap to compute, and it gives the motion at any time of the step. One
 If two events are so close that each would change the other, the step ends early, and they happen
 together at its end. Only segments of sliding blocks and their neighbours are touched, since the
 derivatives of all other blocks are zero.
+
+Arguments such as ``medium``, ``motion`` and ``tally`` are groups of numbers and arrays, which
+`arrays` defines. Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its
+columns are blocks. Segment r of sliding blocks begins with the block ``edges[2 r]`` and ends before
+the block ``edges[2 r + 1]``.
 """
 
 import math
