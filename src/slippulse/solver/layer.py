@@ -82,7 +82,8 @@ class LayerScene:
             check_number(name, getattr(self, name), at_least=0.0)
         check_number("cells", self.cells, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
-        allowed = f"a number <= {MAX_DAMPING_RATIO} divided by the number of cells"
+        largest = MAX_DAMPING_RATIO / self.cells
+        allowed = f"a number <= {largest:.4g}, above which {self.cells} cells are unstable"
         check_that(self.beta * self.cells <= MAX_DAMPING_RATIO, "beta", self.beta, allowed)
         allowed = "a symmetric scene, if the trail is finite"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
