@@ -67,7 +67,7 @@ BAD = {
     "empty; allowed: a row of names": "",
     "no row of numbers": "x,tau\n",
     "one row of numbers; allowed: at least 2": "x,tau\n0,1\n",
-    "row 3: -1; allowed: >= 0": "x,tau\n0,.1\n-1,.2\n",
+    "row 3: position -1; allowed: >= 0": "x,tau\n0,.1\n-1,.2\n",
     "row 4: position 0; allowed: at most 2 rows": "x,tau\n0,.1\n0,.2\n0,.3\n",
     "row 3: tau = 'high'; allowed: a finite number": "x,tau\n0,.1\n1,high\n",
     "row 2: tau = nothing": "x,tau\n0,\n1,.2\n",
