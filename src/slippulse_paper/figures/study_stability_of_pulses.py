@@ -29,7 +29,7 @@ ROUNDING_ERROR = 2e-9
 MIN_DRAWN_VELOCITY = 0.03
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
     exact, lattice : final slip as a function of the distance x from the step, under a displacement
