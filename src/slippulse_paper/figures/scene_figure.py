@@ -81,13 +81,16 @@ def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
     """Return the largest slip and slip velocity of the exact steady pulse on each side.
 
     Each is drawn as a horizontal line from x = 0 to the column position, which is the end of the
-    drawn range on the side of the pulse. Sides without a pulse or without theory have no rows.
+    drawn range on the side of the pulse. There are no rows for sides without a pulse at the end or
+    without theory.
 
     theory : measured and predicted numbers of the run
     """
     lower, upper = space_time.drawn_range(run)
-    # Only the pulse on the right is measured. On the left there is a pulse if any block has stuck.
-    has_left_pulse = math.isfinite(run.attrs["first_stick_time"])
+    # Only the pulse on the right is measured. On the left there is a pulse if some block has stuck,
+    # and if some blocks on the left still slide at the end.
+    slides_on_left = (run["slip_velocity"].values[run["x"].values < 0.0] > 0.0).any()
+    has_left_pulse = math.isfinite(run.attrs["first_stick_time"]) and slides_on_left
     has_right_pulse = theory["pulse_state"] not in ("none", "stopped")
     rows = []
     for field, column in LARGEST_VALUE_COLUMNS.items():
