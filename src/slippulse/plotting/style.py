@@ -286,6 +286,7 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
     figure.set_layout_engine(None)
     source = f"configuration {configuration_digest()}" if configuration_digest() else None
     metadata = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": source}
+    # A file gets its name only when it is complete.
     write_whole(png, lambda path: _save_png(canvas, path, source))
     write_whole(pdf, lambda path: figure.savefig(path, format="pdf", metadata=metadata))
 

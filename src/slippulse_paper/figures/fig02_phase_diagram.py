@@ -115,9 +115,9 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def numbers_of_regimes(profiles: list[pd.DataFrame]) -> dict[tuple[str, str], str]:
-    """Return the number of each drawn profile, by its boundary and regime.
+    """Return the number of each drawn profile as a text, by its boundary and regime.
 
-    The number is written beside the profile, and beside the name of its regime in the plane.
+    The text is put in front of the name of the regime in the plane.
     """
     numbers = {}
     for number, rows in zip(NUMBERS, profiles, strict=False):

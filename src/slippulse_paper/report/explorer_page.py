@@ -61,7 +61,8 @@ def front_law(law: pd.DataFrame) -> dict:
     law : the table of the study explorer_law
     """
     # The browser does not compute this law itself, because that needs the Wiener-Hopf method.
-    # The rows have evenly spaced values of arsinh(b/scale) from 0 on, the columns of ln(v - 1).
+    # The study has evenly spaced values of arsinh(b/scale), from 0 on, which become the rows, and
+    # of ln(v - 1), which become the columns.
     row_values, column_values = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     last_row = float(row_values[-1])
     first_column, last_column = float(column_values[0]), float(column_values[-1])

@@ -118,7 +118,7 @@ def parameters(config: Mapping, name: str) -> str:
     boundary = BOUNDARY_SYMBOLS[simulation["boundary"]]
     # The values of each parameter by its symbol. Parameters without values are left out at the end.
     values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
-    values |= {f"${term.symbol}$": simulation.get(name) for name, term in EXTRA_TERMS.items()}
+    values |= {f"${term.symbol}$": simulation.get(key) for key, term in EXTRA_TERMS.items()}
     if right == ["same"]:
         values[r"$\tau_0$"] = left
     else:

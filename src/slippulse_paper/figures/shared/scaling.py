@@ -176,11 +176,6 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     title = style.conditions(held=boundary == "displacement")
     title += rf", $\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
     ratios = np.sort(table["damping_ratio"].unique())
-    positive_ratios = ratios[ratios > 0.0]
-    # If all runs are undamped, the scale of the insets may have any range.
-    smallest_positive = positive_ratios[0] if positive_ratios.size else 1.0
-    right_end = 1.7 * max(ratios[-1], smallest_positive)
-    ticks = ratios[::2] if len(ratios) > 4 else ratios
     figure, panels = style.new_panels(PAGE_WIDTH, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, table, quantity, colours)
@@ -188,10 +183,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         # The runs lie above the line of equality, so that the lower right corner is free.
         box = (0.52, 0.12, 0.26, 0.29)
         inset = ratio_inset(axes, box, runs_of_insets, quantity, "damping_ratio", level_column)
-        # A logarithmic scale has no place for 0, so the scale is linear near 0.
-        inset.set_xscale("symlog", linthresh=smallest_positive, linscale=0.5)
-        style.few_ticks(inset.xaxis, ticks)
-        inset.set_xlim(-0.4 * smallest_positive, right_end)
+        _set_axis_of_damping_ratios(inset, ratios)
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
@@ -199,3 +191,16 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     handles.append(entry(label, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure
+
+
+def _set_axis_of_damping_ratios(axes: Axes, ratios: np.ndarray) -> None:
+    """Set scale, ticks and range of a horizontal axis for these damping ratios, in rising order.
+
+    A logarithmic scale has no place for 0, so the scale is linear near 0.
+    """
+    positive_ratios = ratios[ratios > 0.0]
+    # If all runs are undamped, any range will do.
+    smallest_positive = positive_ratios[0] if positive_ratios.size else 1.0
+    axes.set_xscale("symlog", linthresh=smallest_positive, linscale=0.5)
+    style.few_ticks(axes.xaxis, ratios[::2] if len(ratios) > 4 else ratios)
+    axes.set_xlim(-0.4 * smallest_positive, 1.7 * max(ratios[-1], smallest_positive))
