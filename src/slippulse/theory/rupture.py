@@ -169,11 +169,11 @@ class Rupture(ExplainsRemovedNames):
         end, reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and end.time <= self._latest_time:
             return FrontEnd(float(end.x), float(min(end.time, self.duration)), reason)
-        # The curve t = T(x) of the fronts continues a little beyond the duration. On it, the front
-        # is searched beyond the last end of a panel that it has reached at the duration.
+        # The curve t = T(x) of the fronts continues a little beyond the duration. The front is
+        # searched beyond the outermost panel end (edge) that it has reached at the duration.
         curve = part.curve
-        reached_panel_ends = curve.edges[curve.edge_times <= self.duration]
-        outermost = reached_panel_ends[-1] if side == RIGHT else reached_panel_ends[0]
+        reached_edges = curve.edges[curve.edge_times <= self.duration]
+        outermost = reached_edges[-1] if side == RIGHT else reached_edges[0]
         return FrontEnd(curve.front_at(self.duration, outermost, side), self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
@@ -322,10 +322,12 @@ class Rupture(ExplainsRemovedNames):
         """
 
         def time_until_stick(position: float) -> float:
-            """Return the stick time of a position, minus the time; negative if it has stuck."""
+            """Return the stick time of a position minus ``time``; negative if it has stuck."""
             stick = float(self._stick_time_beyond_end(np.array(position)))
-            # A position that never sticks counts as if it stuck after the end of the rupture.
-            return (2.0 * self.duration if np.isnan(stick) else stick) - time
+            if np.isnan(stick):
+                # The position never sticks. Any time after the end of the rupture stands for this.
+                stick = 2.0 * self.duration
+            return stick - time
 
         if time_until_stick(front) <= 0.0:
             return front

@@ -222,11 +222,11 @@ def _runs_back(x: np.ndarray) -> bool:
     x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
     """
     dx_ds = NODES_TO_DERIVATIVES @ x
-    # The sign of dx/ds is examined halfway between the start and the first stop of the front. It is
-    # the same on this whole way.
-    first_stop = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
-    halfway = 0.5 * (first_stop - 1.0)
-    return bool(legendre.legval(halfway, NODES_TO_SERIES @ dx_ds) < 0.0)
+    # From the start, s = -1, to the first root of dx/ds (or the end, s = 1) dx/ds has one sign. It
+    # is examined in the middle between them.
+    first_root = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
+    middle = 0.5 * (-1.0 + first_root)
+    return bool(legendre.legval(middle, NODES_TO_SERIES @ dx_ds) < 0.0)
 
 
 def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
@@ -411,9 +411,11 @@ class SlowFront:
         the front stops or reaches the mark on it, the end of the chunk is moved to this event.
         """
         last_s = max(entry.s - next_length, -1.0)
+        # The chunk, and how often its end has been moved to an event.
         chunk, move_count = Chunk(entry.panel, entry.s, last_s), 0
         for _ in range(MAX_CHUNKS):
             if chunk.start - chunk.stop < MIN_CHUNK:
+                # The front can go on only if it is very close to the mark.
                 return self.straight_to_mark(mark)
             x = self.solve(chunk)
             if x is not None and _runs_back(x):
@@ -478,10 +480,12 @@ class SlowFront:
             skipped_motion = skipped.total_motion
             has_skipped = has_skipped or skipped.skips_any
             if skipped.skips_all:
+                # Go on from the right end of the next panel on the left.
                 entry = Entry(entry.panel - 1, 1.0)
             elif not has_skipped:
                 return Entry(int(entry.panel), skipped.last_s)
             elif not skipped.next_moves_on:
+                # The entries after the skipped ones would move the front back.
                 return NO_ENTRY
             else:
                 # The motion must be positive, since a motion of 0 means that nothing was skipped.
@@ -514,7 +518,7 @@ class SlowFront:
         on other panels that were skipped before.
         """
         # The entries are sampled from the given one (sample 0) to the left end of its panel, at
-        # s = -1. motions has the motion of the front by all entries up to each sample.
+        # s = -1. motions has the distance that the front moves by all entries up to each sample.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
         motions = skipped_motion + self.motion_by_entries(entry.panel, s)
         # Only entries in negative pre-stress can move the front back. On a panel with such entries
@@ -597,12 +601,12 @@ class SlowFront:
         return bool(right_time > left_time and np.sum(self.curve.source[panel]) < 0.0)
 
     def entry_behind_slow_front(self) -> Entry | None:
-        """Return the next entry if the last one is on a panel of the slow front itself.
+        """Return the point where the next wave that arrives at the front has entered the rupture.
 
-        The wave that arrives at the front now, and one that arrives slightly later, are traced back
-        to the curve. The later one enters on the panel of the next entries. The other one may still
-        enter on the panel before it. The result is None if the later one comes from beyond the end
-        of the curve.
+        This is used if the wave entered through an earlier part of the slow front itself. Two waves
+        are traced back from the front to the curve: the one that arrives now, and one that arrives
+        slightly later. Next entries are on the panel where the later wave has entered. None if it
+        comes from beyond the end of the curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))
@@ -612,8 +616,8 @@ class SlowFront:
             return None
         panel_now, panel = entries.panel.tolist()
         s_now, s_later = entries.s.tolist()
-        # If the wave enters next to the right end of the panel, the entry is moved to this end.
-        # Otherwise the entries in between would be lost, because of the delay.
+        # If the wave that arrives now entered close to the right end of this panel, the next entry
+        # is this end. The position of the later wave would leave out the entries in between.
         right_end = self.curve.panels[panel].end
         if abs(right_end.time - right_end.x - t_minus_x) < 10.0 * delay:
             return Entry(panel, s=1.0)
@@ -631,13 +635,15 @@ class SlowFront:
         series of the result does not fall below SERIES_TOLERANCE.
         """
         equation = FreeBoundary(self, chunk)
+        # The positions, and the largest change of them in the last step.
         x, change = self.first_guess(chunk), np.inf
         for _ in range(MAX_NEWTON_STEPS):
             step = equation.newton_step(x)
             if step is None:
                 return None
             x = x - step
-            # Both numbers are fractions of the size of the rupture.
+            # The change, and the last two coefficients of the Legendre series of the positions, are
+            # measured as fractions of the size of the rupture.
             previous_change = change
             change = float(np.max(np.abs(step))) / self.size
             last_coefficients = np.max(np.abs(NODES_TO_SERIES[-2:] @ x)) / self.size
