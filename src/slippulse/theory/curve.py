@@ -297,7 +297,8 @@ class Curve:
             -self.edges[::-1], lowest_levels=levels_to_left, y=-y, level=xi
         )
         left = len(self.panels) - 1 - left_of_mirrored
-        # Both sides are solved together. The first half of the results belongs to the left.
+        # Both sides are solved together: the polynomials of T - x on the left panels, and then
+        # those of T + x on the right panels.
         numbers_left = self.polynomial_numbers("t_minus_x", left)
         numbers_right = self.polynomial_numbers("t_plus_x", right)
         numbers = np.concatenate([numbers_left, numbers_right])

@@ -259,8 +259,9 @@ class FreeBoundary:
         """Compute the quantities that do not depend on the unknown positions of the front.
 
         Each node of the chunk is an entry, and belongs to one integral over the curve, from this
-        entry to the front. d_xi, d_eta and the weights have one row for each integral, and one
-        column for each node of the curve from the panel of the entries on.
+        entry to the front. The weights, and d_xi, T - x at the entry minus T - x at a node of the
+        curve, have one row for each integral. They have one column for each node, from the panel of
+        the entries on.
         """
         curve, panel = front.curve, chunk.panel
         s = chunk.parameters()
@@ -511,11 +512,11 @@ class SlowFront:
     def entries_to_skip(
         self, entry: Entry, skipped_motion: float, negligible: float
     ) -> SkippedEntries:
-        """Return the entries to skip on a panel, from a given one to the left.
+        """Return which entries are skipped on a panel, from a given one to the left.
 
-        Entries are skipped as long as all of them together move the front by no more than the
-        fraction ``negligible`` of the size of the rupture. skipped_motion is the motion by entries
-        on other panels that were skipped before.
+        A wave that entered the rupture at an entry later moves the front. Entries are skipped as
+        long as all of them together move it by no more than the fraction ``negligible`` of the size
+        of the rupture. skipped_motion is the motion by entries that were skipped on other panels.
         """
         # The entries are sampled from the given one (sample 0) to the left end of its panel, at
         # s = -1. motions has the distance that the front moves by all entries up to each sample.
@@ -531,7 +532,7 @@ class SlowFront:
             # The sample before the first one whose motion is too large, but at least sample 0.
             last = max(0, int(np.argmin(is_negligible)) - 1)
         skips_all = last == s.size - 1
-        # The front moves on if the next sample has no smaller motion than the last skipped one.
+        # Beyond the skipped entries, the front moves on if the motion grows to the next sample.
         next_moves_on = True
         if is_negative and not skips_all:
             next_moves_on = bool(motions[last + 1] >= motions[last])

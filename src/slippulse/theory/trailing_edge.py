@@ -299,9 +299,9 @@ class PartWithEdge(Part):
         self._mark_slow_intervals(refined, piece_starts)
         is_unresolved = ~knots.predicts_middle(halved, middle_knots)
         unresolved_halves = [knots.x[halved[is_unresolved]], middles[is_unresolved]]
-        k = np.searchsorted(refined.x, piece_starts.ravel())
-        has_event = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        pieces_with_event = piece_starts.ravel()[has_event]
+        pieces = np.searchsorted(refined.x, piece_starts.ravel())
+        reaches_end = refined.has_end_kinds(pieces, FASTER_THAN_WAVES, SLIDING)
+        pieces_with_event = piece_starts.ravel()[refined.has_jump(pieces) | reaches_end]
         return refined, np.concatenate([*unresolved_halves, pieces_with_event])
 
     def _intervals_to_divide(self, knots: Knots, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
