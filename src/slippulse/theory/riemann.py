@@ -526,10 +526,7 @@ def _kernel_between(z: np.ndarray, lowest: float, highest: float, order: int) ->
 
 
 def _next_power_of_two(bound: float) -> float:
-    """Return the smallest power of two, 1 or larger, that is not below a bound; 0 for 0.
-
-    For a negative bound, it is minus this power for the size of the bound.
-    """
+    """Return a bound with its size rounded up to a power of two, at least 1; 0 remains 0."""
     if bound == 0.0:
         return 0.0
     exponent = max(0, math.ceil(math.log2(abs(bound))))

@@ -268,7 +268,10 @@ class Rupture(ExplainsRemovedNames):
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
-        """Time and position of the first sticking; None if nothing sticks before ``duration``."""
+        """Time and position of the first sticking; None if nothing is known to stick.
+
+        So it is None if nothing sticks before ``duration``, or not before ``limit``.
+        """
         first_of_parts = [part.first_stick() for part in self._solved_parts]
         # The earliest one. The result is None for a part in which nothing sticks.
         first = min(filter(None, first_of_parts), default=None)
@@ -284,7 +287,7 @@ class Rupture(ExplainsRemovedNames):
     def transition(self) -> ExactTransition:
         """T_trans and L_trans of the transition from crack to pulse, which is the first stick.
 
-        Both are NaN if nothing sticks before ``duration``.
+        Both are NaN if ``first_stick`` is None.
         """
         stick = self.first_stick
         if stick is None:
@@ -301,7 +304,7 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        float, NaN before anything sticks
+        float, NaN before anything sticks, and where the front or the edge is not known
         """
         check_choice("side", side, ("right", "left"))
         time = self._checked_time(time)

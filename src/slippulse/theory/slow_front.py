@@ -310,8 +310,8 @@ class FreeBoundary:
         dx_ds = NODES_TO_DERIVATIVES @ x
         integrals = over_known + prestress_integral + integrate_kernel_minus_1 @ (tau * dx_ds)
         # The derivatives of all integrals (rows) by all positions (columns). A position changes
-        # dx/ds and tau at its node. It also changes the kernel of its own row, and that of the
-        # other rows at its node by the opposite amount.
+        # dx/ds and tau at its node. It also changes the kernel: in its own integral at all nodes,
+        # and in each other integral at its node, by the opposite amount.
         by_dx_ds = (integrate_kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
         by_tau = integrate_kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
         by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, known_count:] * (tau * dx_ds)
