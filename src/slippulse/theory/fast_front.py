@@ -146,7 +146,8 @@ class FastFront:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         # The phase changes fastest where the front is fastest, at the higher end of the interval.
         level = max(background.left_value, background.right_value)
-        # If tau is positive only because of a Gaussian, the largest possible phase is assumed.
+        # If the level is not positive, tau can only be so because of a Gaussian, whose height is not
+        # known here. Then the largest possible phase is assumed.
         proper_length_per_x = 1.0
         if level > 0.0:
             slowness = self.slowness(np.array(min(level, 1.0)))
@@ -169,7 +170,7 @@ class FastFront:
         last_feature = float(np.max(self.features, initial=-np.inf))
         while x < stop and time < until:
             piece = self.piece_right_of(x)
-            # Where the pre-stress is not above 0, the front is slower than the waves.
+            # In negative pre-stress the front is slower than the waves.
             if not piece.is_above:
                 break
             end = min(stop, piece.right)

@@ -128,8 +128,8 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     k = past_of_c.stiffness
     a_begins, b_ends = curve.crossings(middle, time - a, time + b)
     past = PastOnCurve(a_begins, past_of_c.left, past_of_c.right, b_ends)
-    # w and F are divided by exp(alpha t/2) at the time of a and b, so that w is du/dt there. At
-    # c, which is half of the distance earlier, w keeps an exponential factor.
+    # w and F are divided by exp(alpha t/2) at the time of a and b, so that w is du/dt there. At c,
+    # which is half of the distance earlier, w keeps an exponential factor.
     w_at_a, w_at_b = velocity
     w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
