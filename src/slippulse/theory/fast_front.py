@@ -146,8 +146,8 @@ class FastFront:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         # The phase changes fastest where the front is fastest, at the higher end of the interval.
         level = max(background.left_value, background.right_value)
-        # If the level is not positive, tau can only be so because of a Gaussian, whose height is not
-        # known here. Then the largest possible phase is assumed.
+        # If the level is not positive, tau can only be so because of a Gaussian of unknown height.
+        # Then the largest possible phase is assumed.
         proper_length_per_x = 1.0
         if level > 0.0:
             slowness = self.slowness(np.array(min(level, 1.0)))
