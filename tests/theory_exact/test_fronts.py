@@ -153,3 +153,15 @@ def test_the_depth_scales_with_the_leaf_springs_and_falls_with_the_level():
     depths = [barrier_depth(0.4, level, 0.65, 0.1) for level in (-0.1, -0.3, -1.0, -3.0)]
     assert np.all(np.diff(depths) < 0.0)
     assert sp.theory.barrier_depth_estimate(0.5, -0.5, 0.65) == pytest.approx(2.1328, abs=1e-4)
+
+
+def test_a_front_that_was_not_followed_is_unknown_afterwards():
+    points = ((-9.34, 0.187), (-2.75, -0.0097), (-1.504, -0.711), (6.42, -0.368), (7.57, -0.46))
+    prestress = sp.Prestress(0.187, -0.46, 0.9, points=points)
+    rupture = Rupture(prestress, 0.65, 0.1, "total", 20.0)
+    ((left_end, _),) = rupture.front_ends
+    assert left_end.reason == "unresolved"
+    known = rupture.fronts_at(0.99 * left_end.time)
+    assert left_end.x < known[0] < 0.0 < known[1]
+    left, right = rupture.fronts_at(20.0)
+    assert np.isnan(left) and right > 0.0

@@ -201,13 +201,17 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        tuple of float, left and right
+        tuple of float, left and right; NaN for a front that was not followed up to this time
         """
         time = self._checked_time(time)
         check_number("x", x)
-        for part in self._parts:
+        for part, ends in zip(self._parts, self.front_ends, strict=True):
             if part.curve.arrival(x) <= time * (1.0 + EQUALITY_TOLERANCE):
-                return part.curve.front_at(time, x, LEFT), part.curve.front_at(time, x, RIGHT)
+                left, right = (part.curve.front_at(time, x, side) for side in (LEFT, RIGHT))
+                is_left_lost, is_right_lost = (
+                    end.reason not in ("stops", "duration") and end.time < time for end in ends
+                )
+                return np.nan if is_left_lost else left, np.nan if is_right_lost else right
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
