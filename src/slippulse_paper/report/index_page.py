@@ -46,13 +46,14 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     # This function returns a text with the values of the expressions in it.
     evaluated = partial(fill, names=names)
     summary = read_text(texts["summary"])
-    # The page has only the first sentence of the answer. The table of statements has the rest.
+    # The first line of the summary is enough to answer the question.
     first_line = judged_lines(summary, ledger, evaluated)[0]
     paragraphs = {
         "question": evaluated(summary["question"]),
         "accuracy": evaluated(summary["accuracy"]),
         "answer": answer([first_line]),
     }
+    # Rows of the table of the paper's statements and their verdicts.
     rows = statement_rows(summary, ledger, evaluated)
     glossary = [(evaluated(word["term"]), evaluated(word["meaning"])) for word in summary["words"]]
     captions = read_captions(texts["captions"], evaluated)
