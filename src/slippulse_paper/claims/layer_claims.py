@@ -78,7 +78,11 @@ def change_with_distance(evidence: Evidence, quantity: str, before_last: int = 1
 
 
 def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
-    """Return the sliding time divided by the time that a shear front needs to cross the layer."""
+    """Return the sliding time divided by the crossing time.
+
+    The crossing time passes between the arrival of the front and that of shear waves from the top.
+    Both times are widths divided by the front speed, which cancels.
+    """
     return pulses["pulse_width"] / crossing_width(pulses)
 
 
@@ -487,19 +491,28 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
 def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     """Return quantities of pulses by name, each with one value for each pulse.
 
-    width : width by the paper's formula divided by the pulse width
-    slip : pulse slip divided by the slip by the formula
-    brittle_... : for pulses with the smallest fracture energy
-    line_... : for pulses in one dimension with the same friction; width and slip are divided by
-        those by the formulas
-    wider : pulse width divided by the width in one dimension
-    less_damped : width in one dimension divided by the one with more damping
-    crossing : pulse width divided by `crossing_width`; brittle_crossing for all fracture energies
-        below BRITTLE_ENERGY
-    sliding : time for which a point slides, divided by the time in which a shear wave crosses the
-        layer
+    These are for all pulses:
+
+    gamma, tau0 : elasticity ratio, and level of the pre-stress
+    wider : pulse width divided by the width in one dimension with the same friction and with
+        damping
+    crossing : sliding time divided by the crossing time (`sliding_in_crossings`)
+    sliding : sliding time divided by H/c_s, where c_s is the shear wave speed
     slip_over_bound : slip divided by the largest slip that the energy balance allows
     waves : fraction of the released energy that leaves as waves
+
+    The others are for the pulses of `with_varied_energy`:
+
+    energy, speed : fracture energy, and front speed
+    width : width by the paper's formula divided by the pulse width
+    slip : slip divided by the slip by the paper's formula
+    brittle_speed, brittle_slip : speed and slip, for the smallest fracture energy
+    brittle_crossing : crossing, for fracture energies below BRITTLE_ENERGY
+    line_speed, line_width, line_slip : for pulses in one dimension with the same friction and with
+        damping; width and slip are divided by those of the paper's formulas
+    less_damped : width in one dimension with the smaller damping, divided by the width with the
+        larger one
+    thinnest_width : pulse width, for the smallest gamma
     """
     varied = with_varied_energy(pulses)
     brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
@@ -524,6 +537,7 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
         "less_damped": varied["less_damped_pulse_width"] / varied["damped_pulse_width"],
         "crossing": sliding_in_crossings(pulses),
         "brittle_crossing": sliding_in_crossings(brittle),
+        # In these units c_s = sqrt(gamma/2) and H = 1.
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
         "thinnest_width": with_smallest_gamma(varied)["pulse_width"],
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],

@@ -337,24 +337,27 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
 
 
 def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
-    """Return the velocity of the right pulse at the end of its run, simulated and by theory.
+    """Return the velocity at the crest of the right pulse at the end, simulated and by theory.
 
-    velocity : simulated velocity at the crest of the pulse, where it is largest
-    exact_velocity : half of the push where the wave that now meets the crest was sent out. This
-        wave left the right front there and has run to the left since.
+    Also return whether the rupture is still a crack.
+
+    velocity : simulated velocity at the crest, where the velocity is largest
+    exact_velocity : two waves meet at the crest. One left x_* and ran to the right. The other left
+        the right front, and ran to the left. The velocity is half of the integral of the pre-stress
+        between the points where they started.
     is_crack : True if the blocks near the nucleation, at START, still slide
 
     The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
     crest = crest_position(run, integral)
-    origin_of_wave = origin_on_front(run, crest)
-    integral_at_origin = float(np.interp(origin_of_wave, CELL_MIDDLES, integral))
-    # The push is the integral from x_*, where the integral is smallest.
-    push = integral_at_origin - integral[CELL_MIDDLES < 0.0].min()
+    start_on_front = start_of_left_running_wave(run, crest)
+    integral_to_front = float(np.interp(start_on_front, CELL_MIDDLES, integral))
+    # x_* is the position on the left where the integral is smallest.
+    integral_to_x_star = integral[CELL_MIDDLES < 0.0].min()
     first_block_beyond_start = np.searchsorted(run["x"], START)
     return {
         "velocity": float(np.interp(crest, run["x"], run["slip_velocity"])),
-        "exact_velocity": 0.5 * push,
+        "exact_velocity": 0.5 * (integral_to_front - integral_to_x_star),
         "is_crack": bool(np.isnan(run["stick_time"][first_block_beyond_start])),
     }
 
@@ -376,11 +379,10 @@ def crest_position(run: Recorded, integral: np.ndarray) -> float:
     return x_star + end_time - departure_time
 
 
-def origin_on_front(run: Recorded, position: float) -> float:
-    """Return the position at which a wave has left the right front.
+def start_of_left_running_wave(run: Recorded, position: float) -> float:
+    """Return where a wave that runs to the left started on the right front.
 
-    The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
-    the end.
+    If it left the front at X and time t, it is at X - (end_time - t) at the end.
 
     position : position of the wave at the end
     """
