@@ -104,22 +104,20 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
     single change with the largest effect.
     """
-    all_changes = changes(combinations)
-    smallest_deciding: dict[str, Change] = {}
-    for change in sorted(all_changes, key=attrgetter("size")):
-        holds_before, holds_after = change.before.result["holds"], change.after.result["holds"]
-        if holds_before is True and holds_after is False:
-            smallest_deciding.setdefault(change.name, change)
-    # Changes between exact solutions rank above those between lattices, and larger changes above
-    # smaller ones.
-    rank = attrgetter("exact", "size")
-    largest_by_choice: dict[str, Change] = {}
-    for change in sorted(all_changes, key=rank):
-        # This change ranks above the earlier ones of the same choice, and replaces them.
-        largest_by_choice[change.name] = change
-    largest_first = sorted(largest_by_choice.values(), key=rank)[::-1]
-    names = [change.name for change in largest_first]
-    decisive = [smallest_deciding[name] for name in names if name in smallest_deciding]
+    # Changes between exact solutions come first, and larger changes before smaller ones.
+    largest_first = sorted(changes(combinations), key=attrgetter("exact", "size"))[::-1]
+    names = dict.fromkeys(change.name for change in largest_first)
+    decisive = []
+    for name in names:
+        changes_to_failure = [
+            change
+            for change in largest_first
+            if change.name == name
+            and change.before.result["holds"] is True
+            and change.after.result["holds"] is False
+        ]
+        if changes_to_failure:
+            decisive.append(min(changes_to_failure, key=attrgetter("size")))
     return decisive or largest_first[:1]
 
 
@@ -168,7 +166,7 @@ class OverChoices(Claim):
         choice_names : names of the choices in sentences
         settings : the choices, in words, of the first combination whose verdict has a caveat, or of
             the first combination if none has
-        unsure : the template values of the claim at this combination
+        unsure : the template values of the result at this combination
         """
         results = [combination.result for combination in self.combinations]
         at_last_release = [

@@ -47,6 +47,7 @@ def all_numbers(
 
     The result is empty if a changed configuration has no runs for some of the numbers.
 
+    damping_ratio : damping ratio of the figures, which expressions may use
     expression_groups : arguments of `numbers`, one mapping for each table
     """
     values: dict[str, float] = {}
@@ -147,6 +148,7 @@ def backward_threshold(evidence: Evidence) -> dict[str, float]:
     """
     columns = ["min_stuck_stress", "friction_ratio_needed"]
     runs = pd.concat([evidence.tables[name][columns] for name in evidence.swept])
+    # By this threshold, a stuck block slides back as soon as its stress is -1.
     slides_back = runs["min_stuck_stress"] <= -1.0
     return {
         "back": float(slides_back.sum()),

@@ -1,7 +1,8 @@
 """Judge claims about pulses on lattices: equations, uniqueness and stability.
 
 `equation` and `always` judge claims whose rule is in manuscript/claims.yaml. Each other claim has a
-function here, which takes the evidence and the id of the claim, and returns the result.
+function here, which takes the evidence and the id of the claim, and returns the result. Its
+`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -79,6 +80,7 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     if not holds:
         # Without a condition, the rupture must end in one of these regimes.
         holds = f"regime in {rule.ends}"
+    # Where lattices cannot decide, the exact solution must end in one of the regimes rule.ends.
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
         decided += evidence.holds_in_runs(sweep, rule.where, holds, rule.decidable, rule.ends)
@@ -107,13 +109,13 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     change_of_reference = table["left"].map(reference_by_left[VELOCITY_CHANGE])
     has_changed = change.abs() > change_of_reference.abs()
     widening = table[HALF_WIDTH] - table["left"].map(reference_by_left[HALF_WIDTH])
-    signs = {
-        "changed": np.sign(change).where(has_changed, 0.0),
-        "widened": np.sign(widening),
-    }
-    # A pulse that has died counts as decayed.
+    changed = np.sign(change).where(has_changed, 0.0)
+    widened = np.sign(widening)
     has_died = table["regime"] == "arrested"
-    return {name: sign.mask(has_died, -1.0).fillna(0.0) for name, sign in signs.items()}
+    return {
+        "changed": changed.mask(has_died, -1.0).fillna(0.0),
+        "widened": widened.mask(has_died, -1.0).fillna(0.0),
+    }
 
 
 def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
@@ -126,7 +128,8 @@ def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
 def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether the layer is thin: its thickness must be much smaller than each pulse width.
 
-    The thickness is 1. Divided by the width, it must not be larger than the tolerance.
+    The thickness is 1. Divided by the width, it must not be larger than the tolerance. This is a
+    premise of the model. If it fails, the verdict is "premise not met".
     """
     table = evidence.finest("any_prestress")
     allowed = evidence.tolerance(id)
@@ -299,10 +302,8 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
     deviations = (table[sizes] / exact - 1.0).abs()
     uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy() / exact
     decided = []
-    for deviations_of_run, uncertainties_of_run in zip(
-        deviations.to_numpy(), uncertainties, strict=True
-    ):
-        decided.append(all_within(deviations_of_run, uncertainties_of_run, allowed))
+    for run, deviations_of_run in enumerate(deviations.to_numpy()):
+        decided.append(all_within(deviations_of_run, uncertainties[run], allowed))
     largest = deviations.max()
     words = "on the lattice, with damping, off by at most"
     further = {

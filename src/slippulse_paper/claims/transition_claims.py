@@ -49,16 +49,24 @@ SYMBOLS = {"time": "T", "length": "L"}
 # time of the first stick, or as the time at which the slip reaches the printed value 2 tau/gamma,
 # where tau is taken as the level tau_0.
 FIRST_STICK, PRINTED_SLIP = "first stick", r"slip $2\tau_0/\gamma$"
-# New names of columns, by their names in the tables of results.
+# New names of columns, by their names in the tables of results. A transition is measured at the
+# first stick if the displacement is held, and at a fraction of the path if the stress is held.
 PAPER_ESTIMATES = {
     "paper_transition_time": "estimated_time",
     "paper_transition_length": "estimated_length",
 }
-STICK_COLUMNS = {"transition_time": "time", "transition_length": "length"}
-SLIP_COLUMNS = {"slip_time_background": "time", "slip_length_background": "length"}
+TRANSITION_COLUMNS = {
+    "transition_time": "time",
+    "transition_length": "length",
+    **PAPER_ESTIMATES,
+}
 COLUMNS_BY_CRITERION = {
-    FIRST_STICK: STICK_COLUMNS | PAPER_ESTIMATES,
-    PRINTED_SLIP: SLIP_COLUMNS | PAPER_ESTIMATES,
+    FIRST_STICK: TRANSITION_COLUMNS,
+    PRINTED_SLIP: {
+        "slip_time_background": "time",
+        "slip_length_background": "length",
+        **PAPER_ESTIMATES,
+    },
 }
 # New names of columns of lattices under held stress, which are measured at the last release.
 ARREST_COLUMNS = {
@@ -90,10 +98,11 @@ def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
 
 
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Return the runs of figure 5, and the undamped runs of figures 10 and 11.
+    """Return the lattice runs of figure 5, and the undamped ones of figures 10 and 11.
 
-    Sweeps without such runs are left out.
+    A sweep is left out if a changed configuration has no such runs in it.
     """
+    # The sweeps of these figures, with conditions that select runs.
     conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
@@ -108,12 +117,12 @@ def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 
 
 def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Return exact solutions at each combination of choices.
+    """Return exact solutions at each combination of the choices that the paper leaves open.
 
     The combination with which we drew figure 5 comes first, because claims show the numbers of the
     first one.
     """
-    # The choices that vary, and their values in figure 5.
+    # The names of these choices, and their values in figure 5.
     open_choices = ["release", "damping_ratio"]
     choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
@@ -157,10 +166,8 @@ def arrests(evidence: Evidence) -> list[Runs]:
     is at the last release.
     """
     arrest_runs = []
-    for choice, exact_tables in exact_runs(evidence, "stress"):
-        widest = [
-            widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK]) for table in exact_tables
-        ]
+    for choice, tables in exact_runs(evidence, "stress"):
+        widest = [widest_at_each_level(table, TRANSITION_COLUMNS) for table in tables]
         arrest_runs.append(Runs(choice, widest))
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
@@ -182,11 +189,12 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
     widest = table.sort_values("width").drop_duplicates("left", keep="last")
     widest = widest.rename(columns=new_names)
     if "covered" not in widest:
-        # An exact solution is measured when the front has covered a fraction of its whole distance.
-        # This distance is equal to the estimated time, which assumes the speed 1.
+        # An exact solution is measured when the front has covered a fraction of |x_minus|. Its
+        # table has the estimated time for all of this distance, which is equal to the distance
+        # because the paper assumes the speed 1.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
-    # At speed 1 the left front needs a time equal to its distance. Since the right front has run
-    # equally far, the distance between the fronts is twice as long.
+    # The new estimates are for the covered distance. At speed 1 the left front needs a time equal
+    # to it. Since the right front has run equally far, the fronts are twice as far apart.
     covered = widest["covered"]
     return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 
@@ -277,6 +285,7 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     reach this value, so the claim also shows how many do.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
+    # Count the runs that reach the printed slip.
     runs = evidence.finest("scaling_displacement")
     at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
     # The ratio is NaN if a run does not reach the printed slip.
@@ -390,8 +399,9 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """Judge whether the left front takes longer to its arrest than it would take at speed 1.
 
-    The paper estimates the time by this speed, and says that it underestimates the time. Today the
-    claim has no tolerance (0). Its earlier tolerance was a limit on how much longer it may take.
+    The paper estimates the time by this speed, and says that the estimate is too short. The
+    tolerance of this claim is 0, which sets no limit to the additional time. The ledger also asks
+    for the verdict at an earlier tolerance, which was such a limit.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
