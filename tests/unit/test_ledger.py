@@ -368,7 +368,7 @@ WHY = {
     "estimate": (ESTIMATE, "The median deviation is 25 %, tolerance 20 %; the uncertainty is 1 %."),
     "scaling": (
         {"kind": "scaling"},
-        "The deviation is 0.25, tolerance 0.2; the uncertainty is 1 %.",
+        "The deviation is 0.25, tolerance 0.2; the uncertainty is 0.0100.",
     ),
     "always": (AGAINST, "It holds in 5 of 8 cases (1 against, 2 undecided)."),
     "reading": (UNLIKELY, "The best fit has p = 2.0×10⁻⁴, required at least 0.05."),

@@ -121,17 +121,16 @@ def front_at_end(
 
 
 def sliding_stretches(velocity: np.ndarray) -> list[slice]:
-    """Return the pulses in a row of blocks: the slices of neighbouring blocks that slide.
+    """Return the pulses in a row of blocks: a slice for each stretch of blocks that slide.
 
     velocity : slip velocities of the blocks
 
-    The last stretch of sliding blocks is the leading pulse. Stretches that are much slower than it
-    are left out.
+    The last stretch is the leading pulse. Stretches that are much slower than it are left out.
     """
-    # The blocks at which sliding begins or ends, in turns: the first block of a stretch, and the
-    # first block after it.
+    # Between neighbouring blocks, sliding begins and ends in turns. Each stretch has the number of
+    # its first block, and the number of the first block after it.
     changes = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
-    stretches = list(map(slice, changes[0::2], changes[1::2]))
+    stretches = [slice(first, end) for first, end in zip(changes[0::2], changes[1::2], strict=True)]
     if not stretches:
         return []
     least_peak = MIN_RELATIVE_PEAK * np.max(velocity[stretches[-1]])

@@ -104,15 +104,19 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
     single change with the largest effect.
     """
-    # Changes between exact solutions come first, and larger changes before smaller ones.
-    largest_first = sorted(changes(combinations), key=attrgetter("exact", "size"))[::-1]
-    names = dict.fromkeys(change.name for change in largest_first)
+    # Changes between exact solutions rank above those between lattices, and larger changes above
+    # smaller ones.
+    rank = attrgetter("exact", "size")
+    ranked = sorted(changes(combinations), key=rank)
+    # The dictionary keeps the last change of each choice, which ranks highest.
+    largest_by_choice = {change.name: change for change in ranked}
+    largest_first = sorted(largest_by_choice.values(), key=rank)[::-1]
     decisive = []
-    for name in names:
+    for largest in largest_first:
         changes_to_failure = [
             change
-            for change in largest_first
-            if change.name == name
+            for change in ranked
+            if change.name == largest.name
             and change.before.result["holds"] is True
             and change.after.result["holds"] is False
         ]
