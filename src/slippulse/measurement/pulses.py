@@ -19,8 +19,8 @@ MIN_RELATIVE_PEAK = 0.05
 class LeadingPulse(NamedTuple):
     """The pulse behind the right front, at the end of a run.
 
-    All numbers except the front and its speed are NaN if an exact solution does not know slip
-    velocity everywhere on the right.
+    All numbers except the front, its speed and the number of pulses are NaN if an exact solution
+    does not know slip velocity everywhere on the right.
     """
 
     front: float  # distance from x = 0; it can lie between two blocks
@@ -29,7 +29,7 @@ class LeadingPulse(NamedTuple):
     peak_velocity: float = np.nan  # largest slip velocity, from a parabola through three blocks
     peak_distance: float = np.nan  # distance of the peak from x = 0
     slip: float = np.nan  # mean final slip over half a width behind the trailing edge, if any
-    pulses: int = 1  # number of pulses on the right; 0 if the front has stopped
+    pulses: int = 1  # number of pulses on the right; 0 if the front has stopped, 1 if not known
 
 
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
@@ -48,7 +48,7 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         return LeadingPulse(front, speed)
     # The slices of the blocks in each pulse.
     pulses = [] if has_stopped else sliding_stretches(velocity)
-    # Slip velocity of the leading pulse alone, 0 everywhere if there is no pulse.
+    # Slip velocity of the leading pulse alone: it is 0 outside it, or everywhere without a pulse.
     leading_velocity = np.zeros(distance.size)
     if pulses:
         leading_velocity[pulses[-1]] = velocity[pulses[-1]]

@@ -172,17 +172,17 @@ class OverChoices(Claim):
             the first combination if none has
         unsure : the template values of the result at this combination
         """
-        results = [combination.result for combination in self.combinations]
-        at_last_release = [
-            combination.result["deviation"]
-            for combination in self.combinations
-            if combination.fraction == LAST_RELEASE_FRACTION
-        ]
-        with_caveat = [
-            combination
-            for combination in self.combinations
-            if combination.result["verdict"] == rules.CAVEAT
-        ]
+        holding, failing, at_last_release, with_caveat = [], [], [], []
+        for combination in self.combinations:
+            result = combination.result
+            if result["holds"] is True:
+                holding.append(result["deviation"])
+            if result["holds"] is False:
+                failing.append(result["deviation"])
+            if combination.fraction == LAST_RELEASE_FRACTION and result["deviation"] is not None:
+                at_last_release.append(result["deviation"])
+            if result["verdict"] == rules.CAVEAT:
+                with_caveat.append(combination)
         in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
         settings = [
             f"{CHOICE_WORDS[name]} {text_of_value(value)}"
@@ -190,9 +190,9 @@ class OverChoices(Claim):
             if name in CHOICE_WORDS
         ]
         return self.shown.template_values | {
-            "holding": [result["deviation"] for result in results if result["holds"] is True],
-            "failing": [result["deviation"] for result in results if result["holds"] is False],
-            "last": [deviation for deviation in at_last_release if deviation is not None],
+            "holding": holding,
+            "failing": failing,
+            "last": at_last_release,
             "changes": self.decisive,
             "choice_names": CHOICE_WORDS,
             "settings": settings,

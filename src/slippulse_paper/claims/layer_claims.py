@@ -141,20 +141,22 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
     """
     rows = rows_at_station(evidence, LAST)
     free, held = finest_rows(rows, "free"), finest_rows(rows, "held")
-    ratio, held_ratio = sliding_in_crossings(free), sliding_in_crossings(held)
+    # The sliding time of each pulse, in crossings.
+    crossings, held_crossings = sliding_in_crossings(free), sliding_in_crossings(held)
     longer = times_longer_with_free_top(rows)
-    deviations = (ratio - 1.0).abs()
-    uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * ratio).max())
+    deviations = (crossings - 1.0).abs()
+    # The uncertainty is the largest change of a run from the second finest to the finest grid.
+    uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
-        ratio=Uncertain(float(ratio.median()), uncertainty),
+        ratio=Uncertain(float(crossings.median()), uncertainty),
         further={
-            "crossing times, top free to rise: least": float(ratio.min()),
-            "crossing times, top free to rise: most": float(ratio.max()),
-            "crossing times of the same pulses, top held: least": float(held_ratio.min()),
-            "crossing times of the same pulses, top held: most": float(held_ratio.max()),
+            "crossing times, top free to rise: least": float(crossings.min()),
+            "crossing times, top free to rise: most": float(crossings.max()),
+            "crossing times of the same pulses, top held: least": float(held_crossings.min()),
+            "crossing times of the same pulses, top held: most": float(held_crossings.max()),
             "sliding time, top free to rise, divided by top held: least": float(longer.min()),
             "sliding time, top free to rise, divided by top held: most": float(longer.max()),
         },

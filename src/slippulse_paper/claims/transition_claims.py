@@ -9,6 +9,7 @@ estimated_time, estimated_length : the paper's estimates
 covered : distance that the left front has covered (arrests only)
 
 A function that judges a claim takes the evidence and the id of the claim, and returns the result.
+Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -408,7 +409,7 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
         """Judge the runs of one combination; a tolerance above 0 limits the additional time."""
         return replace(
             takes_longer(tables),
-            extra_verdict=lambda tolerance: takes_longer(tables, limit=tolerance).verdict(),
+            extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
         )
 
     runs = arrests(evidence)
@@ -421,18 +422,16 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     return over_choices(judge_each(runs, judge), further=further)
 
 
-def takes_longer(tables: list[pd.DataFrame], limit: float = 0.0) -> Qualitative:
+def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitative:
     """Judge in each run whether the left front takes longer to its arrest than at speed 1.
 
-    limit : largest allowed additional time, as a fraction of the time at speed 1; no limit if it
-        is 0
+    limit : largest allowed additional time, as a fraction of the time at speed 1
     """
     holds = []
     for table in tables[:2]:
         # At speed 1 the time equals the distance.
-        excess = table["time"] / table["covered"] - 1.0
-        is_allowed = (excess <= limit) | (limit == 0.0)
-        holds.append((excess > 0.0) & is_allowed)
+        additional_time = table["time"] / table["covered"] - 1.0
+        holds.append((additional_time > 0.0) & (additional_time <= limit))
     # The two finest lattices must agree. An exact solution is one table, which agrees with itself.
     return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 
