@@ -456,7 +456,6 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     pulses = finest_rows(rows, "pulse")
     varied = with_varied_energy(pulses)
     thinnest = with_smallest_gamma(varied)
-    patch = finest_rows(evidence.tables["layer"], "patch")
     numbers = {
         "pulses": float(len(pulses)),
         "level": float(varied.index.get_level_values("tau0")[0]),
@@ -467,6 +466,9 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
     }
     quantities = pulse_quantities(pulses)
+    # The time of the first stick, divided by the time in which a shear wave runs to the top and
+    # back. The part patch has short runs, until the region in which the rupture starts has stuck.
+    patch = finest_rows(evidence.tables["layer"], "patch")
     quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
     quantities["free"] = sliding_in_crossings(finest_rows(rows, "free"))
     quantities["longer"] = times_longer_with_free_top(rows)
