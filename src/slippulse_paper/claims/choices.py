@@ -172,7 +172,8 @@ class OverChoices(Claim):
             the first combination if none has
         unsure : the template values of the result at this combination
         """
-        holding, failing, at_last_release, with_caveat = [], [], [], []
+        holding, failing = [], []
+        at_last_release, with_caveat = [], []
         for combination in self.combinations:
             result = combination.result
             if result["holds"] is True:

@@ -26,7 +26,8 @@ CONVERGED_QUANTITIES = ("speed", "pulse_width", "pulse_slip")
 RUN_COLUMNS = ["gamma", "tau0", "weakening", "coupling", "side"]
 LEFT, RIGHT = -1.0, 1.0
 # Stations, counted from the last one.
-LAST, SECOND_LAST, THIRD_LAST = 0, 1, 2
+LAST, SECOND_LAST = 0, 1
+THIRD_LAST = 2
 # Pulses with a smaller fracture energy, divided by the energy that the layer releases, are brittle.
 BRITTLE_ENERGY = 0.4
 # The paper's transition time, pi/sqrt(gamma), divided by the time in which a shear wave runs to the
