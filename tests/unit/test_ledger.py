@@ -25,6 +25,7 @@ from slippulse_paper.claims.paper_claims import (
     judge_claim,
 )
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
+from slippulse_paper.claims.transition_claims import transition_time_underestimated
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
 NAN = float("nan")
@@ -298,6 +299,24 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     late = "left > 0.7", "number > 0.5", "left < 0.7", ["arrested"]
     assert sweep.holds_in_runs("sweep", *late) == [None]
     assert agreed_answers([True, None, False], [True, None, True]) == [True, None, None]
+
+
+def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back():
+    choice = {"release": "total", "damping_ratio": 0.1, "nucleation": "tent", "fraction": 0.95}
+    times = {"transition_time": 3.0, "paper_transition_time": 2.0}
+    lengths = {"transition_length": 3.0, "paper_transition_length": 2.0}
+    runs = pd.DataFrame({"left": [-1.0, -2.0], "boundary": "stress", "width": 1.0})
+    runs = runs.assign(**choice, **times, **lengths)
+
+    class StrongBarriers:
+        tables = dict.fromkeys(("open_choices", "scaling_stress", "damping_stress"), runs)
+
+        def lattices(self, sweep, where):
+            return [self.tables[sweep].query(where)]
+
+    claim = transition_time_underestimated(StrongBarriers(), "underestimate")
+    assert claim.verdict() == NONE
+    assert np.isnan([*claim.json_fields()["further"].values()]).all()
 
 
 def test_the_extra_verdict_decides_at_every_tolerance():

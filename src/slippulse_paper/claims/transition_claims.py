@@ -129,14 +129,15 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     if boundary == "stress":
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
-    condition = f"boundary == {boundary!r} and {NO_BACKWARD_SLIP}"
-    table = evidence.tables["open_choices"].query(condition)
+    table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
     runs_of_figure: list[Runs] = []
     other_runs: list[Runs] = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         is_of_figure = choices_of_figure.items() <= choice.items()
         group = runs_of_figure if is_of_figure else other_runs
+        # If a changed configuration has no such runs, claims are not testable with the empty table.
+        rows = rows.query(NO_BACKWARD_SLIP)
         group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
 
