@@ -24,6 +24,7 @@ from slippulse_paper.claims.paper_claims import (
     fields_of_claim,
     judge_claim,
 )
+from slippulse_paper.claims.pulse_claims import growth_signs
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import transition_time_underestimated
 
@@ -317,6 +318,17 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     claim = transition_time_underestimated(StrongBarriers(), "underestimate")
     assert claim.verdict() == NONE
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
+
+
+def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_zero():
+    """In the first pair of runs the second pulse grows more than the first, in the other less."""
+    runs = pd.DataFrame({"width": [1.0, 1.0, 2.0, 2.0], "beyond": [0.0, 0.1, 0.0, 0.1]})
+    runs["largest_velocity_change"] = [0.01, 0.05, 0.1, 0.05]
+    runs["pulse_half_width"] = [1.0, 1.5, 3.0, 2.0]
+    same = {"left": -0.5, "right": 0.0, "dx": 0.1, "damping_ratio": 0.1, "release": "total"}
+    signs = growth_signs(runs.assign(**same, friction="coulomb", regime="pulse, one-way, steady"))
+    assert [*signs["changed"]] == [0.0, 1.0, 0.0, 0.0]
+    assert [*signs["widened"]] == [0.0, 1.0, 0.0, -1.0]
 
 
 def test_the_extra_verdict_decides_at_every_tolerance():

@@ -96,19 +96,21 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     """Return two columns of signs: 1 if a pulse grows, -1 if it decays, 0 if it does neither.
 
     Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond. It
-    is compared with a reference: the pulse of the run with the same level on the left that stays at
-    the level 0. By theory this pulse keeps its size.
+    is compared with a reference: the pulse of an otherwise equal run that stays at the level 0. By
+    theory this pulse keeps its size.
 
     changed : sign of the velocity change; 0 if it is not larger than the change of the reference
     widened : sign of the half-width minus that of the reference
 
     Both are -1 if the pulse has died, and 0 if they are unknown.
     """
-    reference_by_left = table[table["beyond"] == 0.0].set_index("left")
+    keys = ["left", "right", "width", "dx", "damping_ratio", "release", "friction"]
+    references = table[table["beyond"] == 0.0].drop_duplicates(keys).set_index(keys)
+    # The reference of each run, in the order of the runs.
+    reference = references.reindex(pd.MultiIndex.from_frame(table[keys])).set_index(table.index)
     change = table[VELOCITY_CHANGE]
-    change_of_reference = table["left"].map(reference_by_left[VELOCITY_CHANGE])
-    has_changed = change.abs() > change_of_reference.abs()
-    widening = table[HALF_WIDTH] - table["left"].map(reference_by_left[HALF_WIDTH])
+    has_changed = change.abs() > reference[VELOCITY_CHANGE].abs()
+    widening = table[HALF_WIDTH] - reference[HALF_WIDTH]
     changed = np.sign(change).where(has_changed, 0.0)
     widened = np.sign(widening)
     has_died = table["regime"] == "arrested"

@@ -136,7 +136,7 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         is_of_figure = choices_of_figure.items() <= choice.items()
         group = runs_of_figure if is_of_figure else other_runs
-        # If a changed configuration has no such runs, claims are not testable with the empty table.
+        # In a changed configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
         group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
