@@ -15,7 +15,7 @@ from slippulse_paper.claims import rules
 from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
 from slippulse_paper.claims.evidence import Evidence, agreed_answers, fit_exponent
-from slippulse_paper.claims.findings import findings
+from slippulse_paper.claims.findings import collapse, findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
 from slippulse_paper.claims.paper_claims import (
@@ -26,7 +26,10 @@ from slippulse_paper.claims.paper_claims import (
 )
 from slippulse_paper.claims.pulse_claims import growth_signs
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
-from slippulse_paper.claims.transition_claims import transition_time_underestimated
+from slippulse_paper.claims.transition_claims import (
+    judge_rise_with_prestress,
+    transition_time_underestimated,
+)
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
 NAN = float("nan")
@@ -329,6 +332,25 @@ def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_ze
     signs = growth_signs(runs.assign(**same, friction="coulomb", regime="pulse, one-way, steady"))
     assert [*signs["changed"]] == [0.0, 1.0, 0.0, 0.0]
     assert [*signs["widened"]] == [0.0, 1.0, 0.0, -1.0]
+
+
+def test_a_sweep_may_have_several_release_rules():
+    """A length rises with the level by either rule, and damping changes it by a factor of two."""
+    lists = {"left": [0.2, 0.4], "release": ["total", "elastic"], "damping_ratio": [0.0, 0.1]}
+    runs = pd.MultiIndex.from_product(lists.values(), names=lists).to_frame(index=False)
+    runs = runs.assign(gamma=0.1, width=1.0, dx=0.1)
+    runs["transition_length"] = np.where(runs["release"] == "total", 5.0, 3.0) * (
+        1.0 + runs["left"]
+    )
+    runs["transition_length"] *= np.where(runs["damping_ratio"] > 0.0, 2.0, 1.0)
+
+    class Sweeps:
+        def finest(self, name):
+            return runs
+
+    numbers = collapse(Sweeps())
+    assert (numbers["stress_change"], numbers["stress_scenes"]) == (2.0, 4.0)
+    assert judge_rise_with_prestress(runs, "transition_length").decided == [True] * 4
 
 
 def test_the_extra_verdict_decides_at_every_tolerance():

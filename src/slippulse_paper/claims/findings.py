@@ -92,7 +92,7 @@ def collapse(evidence: Evidence) -> dict[str, float]:
     values: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
         table = evidence.finest(f"damping_{boundary}").fillna({"gamma": 0.0})
-        table = table.set_index(["left", "width", "gamma", "damping_ratio"])
+        table = table.set_index(["left", "width", "gamma", "release", "dx", "damping_ratio"])
         # One row for each scene, and one column for each damping ratio, in ascending order.
         lengths = table["transition_length"].unstack()
         if lengths.empty:

@@ -44,6 +44,9 @@ NO_BACKWARD_SLIP = "left > -1"
 MAX_ARREST_GAP = 1.0
 # The numbers that are shown with a claim are for this fraction of the distance to x_minus.
 SHOWN_FRACTION = 0.95
+# Some claims compare runs that differ only in the level or only in gamma. These parameters are then
+# the same.
+OTHER_PARAMETERS = ("width", "damping_ratio", "release")
 # Quantities of the transition, with their symbols.
 SYMBOLS = {"time": "T", "length": "L"}
 # The paper's T_trans under a displacement boundary can be understood in two ways (criteria): as the
@@ -521,8 +524,12 @@ class Divergence(NamedTuple):
 
 
 def divergence_by_level(table: pd.DataFrame) -> list[Divergence]:
-    """Return the divergence at each level of pre-stress, from the runs at all values of gamma."""
-    return [divergence(runs) for _, runs in table.sort_values("gamma").groupby("left")]
+    """Return the divergence at each level of pre-stress, from the runs at all values of gamma.
+
+    There is one for each width, damping ratio and release rule, if a simulation has several.
+    """
+    groups = table.sort_values("gamma").groupby(["left", *OTHER_PARAMETERS], dropna=False)
+    return [divergence(runs) for _, runs in groups]
 
 
 def divergence(runs: pd.DataFrame) -> Divergence:
@@ -547,7 +554,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 
 
 def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative:
-    """Judge whether a quantity rises with the pre-stress at each gamma.
+    """Judge whether a quantity rises with the pre-stress, among runs that differ in nothing else.
 
     Each pair of neighbouring levels counts as one run. It is undecided if the change is smaller
     than its uncertainty. Values without an uncertainty are exact.
@@ -555,10 +562,10 @@ def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative
     uncertainty = table.get(f"uncertainty_{quantity}", 0.0)
     runs = table.assign(uncertainty=uncertainty).sort_values("left").dropna(subset=quantity)
     decided: list[bool | None] = []
-    for _, same_gamma in runs.groupby("gamma"):
-        changes = same_gamma[quantity].diff()[1:]
+    for _, levels in runs.groupby(["gamma", *OTHER_PARAMETERS], dropna=False):
+        changes = levels[quantity].diff()[1:]
         # A change has the uncertainties of both its values.
-        uncertainties = same_gamma["uncertainty"].rolling(2).sum()[1:]
+        uncertainties = levels["uncertainty"].rolling(2).sum()[1:]
         for change, uncertainty_of_change in zip(changes, uncertainties, strict=True):
             is_decided = abs(change) > uncertainty_of_change
             decided.append(bool(change > 0.0) if is_decided else None)
