@@ -169,11 +169,11 @@ class Rupture(ExplainsRemovedNames):
         end, reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and end.time <= self._latest_time:
             return FrontEnd(float(end.x), float(min(end.time, self.duration)), reason)
-        # The curve t = T(x) of the fronts continues a little beyond the duration. On it, the front
-        # is searched beyond the last end of a panel that it has reached at the duration.
+        # The curve t = T(x) of the fronts continues a little beyond the duration. The front is
+        # searched beyond the outermost panel end (edge) that it has reached at the duration.
         curve = part.curve
-        reached_panel_ends = curve.edges[curve.edge_times <= self.duration]
-        outermost = reached_panel_ends[-1] if side == RIGHT else reached_panel_ends[0]
+        reached_edges = curve.edges[curve.edge_times <= self.duration]
+        outermost = reached_edges[-1] if side == RIGHT else reached_edges[0]
         return FrontEnd(curve.front_at(self.duration, outermost, side), self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
@@ -268,7 +268,10 @@ class Rupture(ExplainsRemovedNames):
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
-        """Time and position of the first sticking; None if nothing sticks before ``duration``."""
+        """Time and position of the first sticking; None if nothing is known to stick.
+
+        So it is None if nothing sticks before ``duration``, or not before ``limit``.
+        """
         first_of_parts = [part.first_stick() for part in self._solved_parts]
         # The earliest one. The result is None for a part in which nothing sticks.
         first = min(filter(None, first_of_parts), default=None)
@@ -284,7 +287,7 @@ class Rupture(ExplainsRemovedNames):
     def transition(self) -> ExactTransition:
         """T_trans and L_trans of the transition from crack to pulse, which is the first stick.
 
-        Both are NaN if nothing sticks before ``duration``.
+        Both are NaN if ``first_stick`` is None.
         """
         stick = self.first_stick
         if stick is None:
@@ -301,7 +304,7 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        float, NaN before anything sticks
+        float, NaN before anything sticks, and where the front or the edge is not known
         """
         check_choice("side", side, ("right", "left"))
         time = self._checked_time(time)
@@ -322,10 +325,12 @@ class Rupture(ExplainsRemovedNames):
         """
 
         def time_until_stick(position: float) -> float:
-            """Return the stick time of a position, minus the time; negative if it has stuck."""
+            """Return the stick time of a position minus ``time``; negative if it has stuck."""
             stick = float(self._stick_time_beyond_end(np.array(position)))
-            # A position that never sticks counts as if it stuck after the end of the rupture.
-            return (2.0 * self.duration if np.isnan(stick) else stick) - time
+            if np.isnan(stick):
+                # The position never sticks. Any time after the end of the rupture stands for this.
+                stick = 2.0 * self.duration
+            return stick - time
 
         if time_until_stick(front) <= 0.0:
             return front
