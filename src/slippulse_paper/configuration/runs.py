@@ -37,12 +37,14 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     """Yield the runs of a resolved simulation, or of one chunk of it."""
     for index, entry in enumerate(entries(simulation)):
         dx = _spacing(simulation, entry, index)
+        # The damping of an entry is beta or, without a list of beta, the damping ratio beta/dx.
+        beta = entry.damping if "beta" in simulation else entry.damping * dx
         yield Run(
             boundary=simulation["boundary"],
             prestress=entry.prestress,
             gamma=entry.gamma,
             dx=dx,
-            beta=entry.damping if "beta" in simulation else entry.damping * dx,
+            beta=beta,
             release=entry.release,
             friction=entry.law,
             extra_terms=entry.extra_terms,
