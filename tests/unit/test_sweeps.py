@@ -45,6 +45,15 @@ def test_runs_are_selected_by_any_parameters_and_keep_their_blocks(runs):
         runs.sel(gamma=0.5)
 
 
+def test_the_nearest_run_is_found_among_runs_without_the_parameter():
+    scenes = [sp.Scene("stress", sp.Prestress(-0.3, 0.0, width), 0.5, 0.1) for width in (None, 2.0)]
+    sweep = sp.run_sweep(scenes)
+    assert sweep.sel(width=1.9, method="nearest")["width"].values.tolist() == [2.0]
+    for options in ({"method": "pad"}, {"method": "nearest", "tolerance": 0.1}):
+        with pytest.raises(ValueError, match="allowed: None"):
+            sweep.sel(width=1.9, **options)
+
+
 def test_xarray_and_pandas_operations_work_on_a_sweep(runs):
     sticks = runs["first_stick_time"]
     expected = [float(sticks.sel(gamma=gamma).mean()) for gamma in sorted(GAMMAS)]

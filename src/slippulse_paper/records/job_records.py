@@ -161,6 +161,7 @@ class RecordedFiles:
     """All records in a folder of results, and the states of the files that they record."""
 
     def __init__(self, results: str | Path) -> None:
+        """Read all records in the folder of results, and list those that cannot be read."""
         self.results = Path(results)
         self.records: dict[Path, Record] = {}
         self.unreadable: list[Path] = []
@@ -315,6 +316,7 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
     folder = Path(path).parent / FOLDER
+    # The records of a folder are cached. A later modification time makes them read again.
     records = _records_in(str(folder), _modification_time(folder))
     return records.get(Path(path).name)
 

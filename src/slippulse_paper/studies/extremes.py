@@ -145,15 +145,15 @@ simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 def measured(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
 
-    The first three quantities below are not measured like all others, and come first.
-
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
     """
     if case.quantity == "velocity error":
-        # The solver does not offer single precision. The error of a simple program shows why.
+        # The solver does not offer single precision. The error of a simple program shows why, so
+        # there is no run.
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":
+        # Only this function can change the sign of the damping. Its solution has no flags.
         solution = solve_on_lattice(scene, damping_sign=case.damping_sign)
         return Outcome(float(solution.slip.max()))
     run = simulated(scene)

@@ -256,17 +256,18 @@ def _asymptote(alpha: float) -> pd.DataFrame:
     """Return the left front and the largest velocity at TIMES, by theory for late times.
 
     The column gap has the distance from the left front to x_minus, the position that the front
-    approaches. At late times the slip spreads by diffusion: at the distance y from x_minus it is
-    U erfc(y sqrt(alpha/t)/2). The final slip U is the integral of y times the pre-stress over y.
-    The largest velocity is the largest time derivative of the slip. The integral of the pre-stress
-    over the gap balances the strain at x_minus, U sqrt(alpha/(pi t)).
+    approaches. At late times t the slip spreads by diffusion: at the distance y from x_minus it is
+    U erfc(y sqrt(alpha/t)/2), where U is the final slip.
     """
     x_minus = prestress_balance_position(ARRESTING_PRESTRESS)
     x = np.linspace(x_minus, 12.0, 20_001)
+    # The final slip is the integral of y times the pre-stress over y.
     final_slip = float(np.trapezoid((x - x_minus) * ARRESTING_PRESTRESS(x), x))
     columns = {
         "time": TIMES,
+        # The largest time derivative of the slip over all y.
         "largest_velocity": final_slip / (np.sqrt(2.0 * np.pi * np.e) * TIMES),
+        # The pre-stress in the gap balances the strain at x_minus, U sqrt(alpha/(pi t)).
         "gap": -final_slip / ARRESTING_PRESTRESS.left * np.sqrt(alpha / (np.pi * TIMES)),
     }
     return pd.DataFrame(columns | {"rate_strengthening": alpha})
