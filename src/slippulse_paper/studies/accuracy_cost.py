@@ -156,7 +156,8 @@ def locking_rows(front_window: float) -> pd.DataFrame:
     """Return the front speed as a function of the time step, for both schemes.
 
     In the textbook scheme the front speed is wrong and depends on the step, because the front
-    advances by one block in a whole number of steps.
+    advances by one block in a whole number of steps. In the localised scheme it does not depend on
+    the step, so fewer steps are enough.
     """
     schemes_and_steps = [("fixed_step", step) for step in LOCKING_STEPS]
     schemes_and_steps += [("localised", step) for step in LOCKING_STEPS[::4]]
