@@ -106,7 +106,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 @cache
 def _front_and_critical_alpha(level: float) -> Front:
-    """Return the front in a uniform pre-stress; rate strengthening does not change its speed."""
+    """Return the front speed in a uniform pre-stress, and the critical rate strengthening.
+
+    Rate strengthening does not change the front speed.
+    """
     speed = float(front_speed(level, DAMPING_RATIO))
     return Front(speed, critical_rate_strengthening(GAMMA, speed))
 
