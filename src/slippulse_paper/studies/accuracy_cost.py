@@ -145,10 +145,10 @@ def settings_of_schemes() -> list[Setting]:
     compared = []
     for dx, step in product(TEXTBOOK_SPACINGS, TEXTBOOK_STEPS):
         if dx * step >= SMALLEST_TEXTBOOK_TIME_STEP:
-            compared.append(Setting("fixed_step", 1, step, dx))
+            compared.append(Setting(scheme="fixed_step", order=1, step=step, dx=dx))
     for dx, order, step in product(SPACINGS, ORDERS, STEPS):
-        compared.append(Setting("localised", order, step, dx))
-    compared.append(Setting("continuum", 1, 1.0, EXACT_SPACING))
+        compared.append(Setting(scheme="localised", order=order, step=step, dx=dx))
+    compared.append(Setting(scheme="continuum", order=1, step=1.0, dx=EXACT_SPACING))
     return compared
 
 

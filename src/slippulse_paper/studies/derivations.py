@@ -70,15 +70,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     published_level = published_scene.prestress.left
     functions: NumberFunctions = {
-        "front_speed_elastic": lambda: front_speed(published_level, damping_ratio, "elastic")
+        "front_speed_elastic": lambda: front_speed(published_level, damping_ratio, "elastic"),
+        **pulse_functions(level, gamma, damping_ratio, release),
+        **one_way_functions(level, gamma, damping_ratio, release),
+        **transition_functions(level, levels),
+        # The strain term of the equation of motion at the nucleation point, divided by the
+        # pre-stress there, which is 1.
+        "strain_term": lambda: abs(curvature_at_nucleation(published_rupture())),
+        **front_functions(),
     }
-    functions |= pulse_functions(level, gamma, damping_ratio, release)
-    functions |= one_way_functions(level, gamma, damping_ratio, release)
-    functions |= transition_functions(level, levels)
-    # The strain term of the equation of motion at the nucleation point, divided by the pre-stress
-    # there, which is 1.
-    functions["strain_term"] = lambda: abs(curvature_at_nucleation(published_rupture()))
-    functions |= front_functions()
+    # The functions are called one by one, so that only one number is NaN if theory refuses it.
     rows = [(name, math.nan, value_or_nan(compute)) for name, compute in functions.items()]
     rows += rows_by_position(published_rupture)
     return pd.DataFrame(rows, columns=["quantity", "x", "value"])
