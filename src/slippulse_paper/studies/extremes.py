@@ -148,8 +148,7 @@ def measured(case: Case, front_window: float) -> Outcome:
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
     """
     if case.quantity == "velocity error":
-        # The solver does not offer single precision. The error of a simple program shows why, so
-        # there is no run.
+        # The solver does not offer single precision, so this is the error of a simple program.
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":

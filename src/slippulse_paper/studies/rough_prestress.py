@@ -381,10 +381,10 @@ def crest_position(run: Recorded, integral: np.ndarray) -> float:
 
 
 def origin_on_front(run: Recorded, position: float) -> float:
-    """Return the position at which a wave has left the right front.
+    """Return the position at which a wave left the right front.
 
-    The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
-    the end.
+    The wave runs to the left at speed 1. If it left the front at the position X and the time t, it
+    is at X + t - end_time at the end.
 
     position : position of the wave at the end
     """
