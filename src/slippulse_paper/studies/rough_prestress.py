@@ -231,7 +231,8 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     """
     parameters = ensemble.parameters
     cell_of_start = int(np.searchsorted(CELL_MIDDLES, START))
-    fates, pulse_rows, pushes_at_start = [], [], []
+    fates: list[Fate] = []
+    pulse_rows, pushes_at_start = [], []
     for run, profile in zip(ensemble.runs, ensemble.profiles, strict=True):
         integral = prestress_integral(profile)
         fate = fate_of_pulse(run, 1, parameters["stop"])
