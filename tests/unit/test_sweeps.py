@@ -89,6 +89,16 @@ def test_a_full_product_becomes_a_grid_and_other_sweeps_are_refused(runs):
         sp.as_grid(runs, over=["speed"])
 
 
+def test_a_grid_keeps_the_runs_without_a_parameter():
+    lists = {"left": [-0.3, -0.2], "width": [None, 2.0]}
+    sweep = sp.sweep(boundary="stress", right=0.0, duration=0.5, dx=0.1, **lists)
+    grid = sp.as_grid(sweep)
+    assert grid["releases"].sizes == {"left": 2, "width": 2} and len(sp.measure(grid)) == 4
+    # The value NaN is the last one. The first run has no width.
+    assert np.isnan(grid["width"][-1])
+    assert sp.point(grid.isel(left=0, width=-1)).equals(sp.point(sweep, 0))
+
+
 def test_measuring_a_sweep_equals_measuring_each_run(runs):
     table = sp.measure(runs)
     assert table.index.name == "point" and len(table) == 4
