@@ -34,7 +34,7 @@ def test_the_verdict_is_computed(monkeypatch, expected, outcome, verdict):
     monkeypatch.setattr(extremes, "measured", Mock(**{how: outcome}))
     monkeypatch.setattr(Case, "expected", lambda case: expected)
     case = Case("family", "where", "front speed", "right", 0.1, 1.0)
-    assert extremes.judged(case, 0.3)["verdict"] == verdict
+    assert extremes.judged_row(case, 0.3)["verdict"] == verdict
 
 
 def test_every_case_ends_as_it_should(study):

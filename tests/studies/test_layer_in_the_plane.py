@@ -63,7 +63,7 @@ def test_pulses_are_followed_until_some_of_them_split(study):
 
 def test_pulses_at_a_smaller_gamma_split_on_the_finest_grid_only():
     gamma = 0.3
-    rows = layer.near_and_far(
+    rows = layer.near_and_far_rows(
         layer.uniform_scene("displacement", gamma, 0.8, layer.weakening_of(0.09, 0.8, gamma))
     )[1]
     far = pd.DataFrame(rows).query("station == 3").set_index(["part", "cells"])

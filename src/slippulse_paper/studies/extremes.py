@@ -77,10 +77,10 @@ class Outcome(NamedTuple):
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row per case, with its value, its flags or refusal, and its verdict."""
     front_window = settings["measure"]["front_window"]
-    return pd.DataFrame([judged(case, front_window) for case in CASES])
+    return pd.DataFrame([judged_row(case, front_window) for case in CASES])
 
 
-def judged(case: Case, front_window: float) -> dict[str, Any]:
+def judged_row(case: Case, front_window: float) -> dict[str, Any]:
     """Run a case and return its row of the table, with the verdict.
 
     A run that is flagged gets the verdict "flagged", whatever its value. Otherwise the value is
@@ -92,7 +92,7 @@ def judged(case: Case, front_window: float) -> dict[str, Any]:
     expected = case.expected()
     error = math.nan
     try:
-        outcome = measured(case, front_window)
+        outcome = measured_outcome(case, front_window)
         scale = abs(expected) if expected != 0.0 else 1.0
         error = abs(outcome.value - expected) / scale
         verdict = verdict_on_outcome(outcome, error, tolerance)
@@ -142,7 +142,7 @@ def verdict_on_outcome(outcome: Outcome, error: float, tolerance: float) -> str:
 simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 
 
-def measured(case: Case, front_window: float) -> Outcome:
+def measured_outcome(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
 
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.

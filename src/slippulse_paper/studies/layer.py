@@ -119,7 +119,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for gamma in GAMMAS:
         rows += pulse_rows(gamma) + patch_rows(gamma)
     for before, level in product(STEP_LEVELS, repeat=2):
-        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
+        rows += rows_across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
     rows += free_top_rows() + held_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
     drawn = uniform_scene("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
     field = field_rows(replace(drawn, duration=SNAPSHOT_TIME))
@@ -136,17 +136,17 @@ def pulse_rows(gamma: float) -> Rows:
     rows: Rows = []
     for tau0, energy in cases:
         scene = uniform_scene("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
-        near_rows, far_rows = near_and_far(scene)
+        near_rows, far_rows = near_and_far_rows(scene)
         theory = one_dimensional_theory(scene)
         rows += [row | theory for row in near_rows] + far_rows
     if gamma == GAMMA:
         # One pulse of the part step is in uniform pre-stress, so it can be followed farther, too.
-        _, far_rows = near_and_far(uniform_scene("displacement", gamma, LEVEL, STEP_WEAKENING))
+        _, far_rows = near_and_far_rows(uniform_scene("displacement", gamma, LEVEL, STEP_WEAKENING))
         rows += far_rows
     return rows
 
 
-def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
+def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     """Return the rows of one pulse at STATION_POSITIONS and, on some grids, at FAR_STATIONS.
 
     The pulse is followed to FAR_STATIONS on the grids of `grids_far_away`. If it has split in one
@@ -287,7 +287,7 @@ def patch_rows(gamma: float) -> Rows:
     strip_first_stick = 2.0 / shear_wave_speed
     scene = uniform_scene("displacement", gamma, LEVEL, weakening_of(STANDARD_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
-    rows = along_path("patch", scene, CELLS[:3])
+    rows = rows_along_path("patch", scene, CELLS[:3])
     # There is one row for each station of a grid, but the region sticks only once in each run.
     rows = [row for row in rows if row["station"] == 1]
     return [row | {"strip_first_stick": strip_first_stick} for row in rows]
@@ -298,7 +298,7 @@ def free_top_rows() -> Rows:
     rows: Rows = []
     for tau0, energy in FREE_TOP_PULSES:
         scene = uniform_scene("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
-        rows += along_path("free", replace(scene, top="free"), CELLS[:3])
+        rows += rows_along_path("free", replace(scene, top="free"), CELLS[:3])
     return rows
 
 
@@ -307,15 +307,14 @@ def held_top_rows() -> Rows:
     rows: Rows = []
     for tau0, energy in FREE_TOP_PULSES:
         scene = uniform_scene("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
-        rows += at_stations("held", scene, CELLS[:3], STATION_POSITIONS)
+        rows += rows_at_stations("held", scene, CELLS[:3], STATION_POSITIONS)
     return rows
 
 
 def crack_rows() -> Rows:
     """Return the rows of a crack in uniform pre-stress under a stress boundary."""
-    return along_path(
-        "crack", uniform_scene("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS[:3]
-    )
+    scene = uniform_scene("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING)
+    return rows_along_path("crack", scene, CELLS[:3])
 
 
 def coupled_rows() -> Rows:
@@ -354,7 +353,7 @@ def barrier_rows() -> Rows:
             nucleation=NUCLEATION_HALF_LENGTH,
             precision="single",
         )
-        rows += along_path("barrier", scene, CELLS[:2], sides=(1, -1))
+        rows += rows_along_path("barrier", scene, CELLS[:2], sides=(1, -1))
     # According to the paper's equation the front runs at speed 1, so the time is the distance.
     balance_distance, _ = paper_transition_stress(prestress)
     return [row | {"balance_distance": balance_distance} for row in rows]
@@ -392,7 +391,7 @@ def uniform_scene(boundary: str, gamma: float, tau0: float, weakening: float) ->
     )
 
 
-def across_a_step(
+def rows_across_a_step(
     gamma: float,
     level: float,
     weakening: float,
@@ -406,7 +405,7 @@ def across_a_step(
     The column tau0 has the level that the pulse enters.
 
     weakening : slip over which the strength falls
-    grids, stations : see `at_stations`
+    grids, stations : see `rows_at_stations`
     """
     scene = uniform_scene("displacement", gamma, before, weakening)
     if before != level:
@@ -415,10 +414,10 @@ def across_a_step(
         scene = replace(scene, prestress=replace(scene.prestress, steps=steps))
     relative_energy = weakening * gamma / level**2
     levels = {"before": before, "tau0": level, "fracture_energy": relative_energy}
-    return [row | levels for row in at_stations("step", scene, grids, stations)]
+    return [row | levels for row in rows_at_stations("step", scene, grids, stations)]
 
 
-def at_stations(
+def rows_at_stations(
     part: str, scene: LayerScene, grids: Sequence[int], stations: Sequence[float]
 ) -> Rows:
     """Measure a pulse at fixed positions on the fault, on each grid.
@@ -462,7 +461,7 @@ def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> L
     return replace(scene, duration=last_stick + margin, trail=trail)
 
 
-def along_path(
+def rows_along_path(
     part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
 ) -> Rows:
     """Measure a rupture at FRACTIONS_OF_PATH of the path of its front, on each grid and side.
@@ -508,7 +507,7 @@ def measured_rows(
     }
     if tau0 > 0.0:
         parameters["fracture_energy"] = scene.weakening * gamma / tau0**2
-    numbers_of_run = whole_run(scene, run, side)
+    numbers_of_run = numbers_of_whole_run(scene, run, side)
     rows = []
     for station, position in enumerate(positions, start=1):
         pulse = pulse_at_station(run, position, scene.nucleation)
@@ -516,7 +515,7 @@ def measured_rows(
     return rows
 
 
-def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
+def numbers_of_whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
     """Return the numbers of a run that do not belong to a station.
 
     first_stick : time at which the middle of the nucleation region sticks. Infinite if it never

@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from ..configuration.chunks import runs_of
-from .layer import LEVEL, STEP_POSITION, across_a_step, stretch, weakening_of
+from .layer import LEVEL, STEP_POSITION, rows_across_a_step, stretch, weakening_of
 
 NEEDS = {"settings": ["figures.study_layer"]}
 
@@ -77,7 +77,7 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
     numbers: list[dict[str, float]] = [{} for _ in grids]
     for name, relative_level in RELATIVE_LEVELS_BEFORE.items():
         before = relative_level * LEVEL
-        rows = across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
+        rows = rows_across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
         for cells, numbers_on_grid in zip(grids, numbers, strict=True):
             # There is one row for each of STATION_POSITIONS.
             before_step, halfway, last = (row for row in rows if row["cells"] == cells)
