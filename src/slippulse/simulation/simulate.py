@@ -60,7 +60,7 @@ def simulate(
         If an argument has another type, or if a sample is later than the end. Also if the run may
         take days, or more memory than a small machine has; `run_sweep` accepts any cost.
     UnstableRun
-        If slip velocity is not finite or larger than the pre-stress can drive.
+        If slip velocity is not finite, or is larger than the pre-stress can drive.
     UnresolvedRun
         If the run is flagged and ``strict`` is true.
 

@@ -78,7 +78,7 @@ def barrier_depth(
     if reason != "stops":
         raise ValueError(
             f"tau_barrier: {tau_barrier!r}, where the front is {reason} at {arguments};"
-            " allowed: levels on which it is resolved"
+            " allowed: levels on which the front is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)
 

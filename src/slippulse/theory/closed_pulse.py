@@ -159,9 +159,9 @@ def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) 
     # named from half of this value on.
     if abs(rate_strengthening) > 0.5 * critical:
         arguments = f"gamma = {gamma:.6g}, speed = {speed:.6g}"
-        allowed = f"less than {critical:.6g} in size at {arguments} without beta"
+        allowed = f"a size below {critical:.6g} (at {arguments}, without beta)"
         refused = f"rate_strengthening: {rate_strengthening!r}"
-        return f"{refused}; allowed: {allowed}, or no pulse is steady"
+        return f"{refused}; allowed: {allowed}, since otherwise no pulse is steady"
     return f"speed: {speed:.6g} at gamma = {gamma:.6g}; allowed: values whose pulse can be computed"
 
 

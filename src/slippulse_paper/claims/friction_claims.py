@@ -92,7 +92,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     with_strengthening = decays[decays.index > 0.0]
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     steady_count_by_spacing = (~with_strengthening).sum()
-    words = "laws, by their strengthening, that leave a steady pulse"
+    words = "number of rate strengthenings under which a pulse stays steady"
     # The condition is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),

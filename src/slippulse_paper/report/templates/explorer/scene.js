@@ -103,7 +103,7 @@ function rowsOf({ scene, rupture, exact, pulse, paper, steady }) {
     if (steady) rows.push(["that slip once steady", steady.slip, paper.slip]);
   }
   if (paper) {
-    rows.push(["pulses end at <i>α</i><sub>c</sub>", criticalRate(gamma, exact.speed), null]);
+    rows.push(["no steady pulse above <i>α</i><sub>c</sub>", criticalRate(gamma, exact.speed), null]);
   }
   return rows;
 }
