@@ -49,12 +49,12 @@ class import_module:
         self.name = name
 
     def run(self, files, outputs, settings):
-        from slippulse.data.files import configuration, write_text
+        from slippulse.data.files import configuration_digest, write_text
         from slippulse_paper.records.job_records import file_digest
 
         digests = [file_digest(path) for path in _paths(files) if "results/" in path]
         for path in _paths(outputs):
-            write_text(f"{self.name} {configuration()} {digests} {path}\\n", path)
+            write_text(f"{self.name} {configuration_digest()} {digests} {path}\\n", path)
 """
 
 

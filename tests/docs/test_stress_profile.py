@@ -40,7 +40,7 @@ def test_the_script_of_the_page_runs(blocks, tmp_path, monkeypatch, shipped):
     # The overlay is the same scene.
     (tmp_path / "mine.yaml").write_text(overlay)
     config = read_config(shipped, [read_overlay("mine.yaml")])
-    simulation = scene_simulation(config.scenes["my_rupture"], config.model)
+    simulation = scene_simulation(config.scenes["my_rupture"], config.model, 0.01)
     (scene,), _ = expand(resolve(simulation, config.model, accuracy_of(config)))
     written = names["scene"].prestress
     assert np.allclose(scene.prestress.points, written.points, rtol=1e-12, atol=1e-12)

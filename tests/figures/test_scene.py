@@ -48,7 +48,7 @@ def draw_one(shipped, folder, name, scene):
     endings = ("numbers", "csv", "png", "pdf", "html")
     outputs = {ending: folder / f"one.{ending}" for ending in endings}
     named = NamedScene.model_validate(scene | {"title": TITLE})
-    sweep = resolve(scene_simulation(named, model), model, accuracy)
+    sweep = resolve(scene_simulation(named, model, accuracy["dx"]), model, accuracy)
     sweeps = {factor: sweep | {"coarser": factor} for factor in accuracy["coarser"]}
     settings = {"simulation": name, "sweep": sweep, "sweeps": sweeps} | common
     settings["solver"] = simulate.SOLVERS[settings["sweep"]["scheme"]]

@@ -85,6 +85,7 @@ SCENES = {
 for name in LATTICES:
     refusal = f"max_step: 9.0; allowed: <= {largest_step(name, 4, 0.0, 0.0065):.4g}"
     SCENES[refusal] = {"scheme": name, "max_step": 9.0}
+SCENES["max_step: 0.2; allowed: <= "] = {"scheme": "fixed_step", "beta": 1e200}
 LAWS = {
     "law: 'velocity'; allowed: coulomb, linear_rate": ("velocity", {}),
     "alpha: 0.1; allowed: law 'coulomb' with nothing": ("coulomb", {"alpha": 0.1}),

@@ -9,7 +9,13 @@ import slippulse as sp
 from slippulse.measurement.front_paths import arrival
 from slippulse.measurement.pulses import LeadingPulse, leading_pulse
 from slippulse.measurement.regime import REGIMES, classify_regime
-from slippulse.measurement.table import far_field, half_width, lattice_noise, sliding_at_once
+from slippulse.measurement.table import (
+    far_field,
+    half_width,
+    lattice_noise,
+    profile_columns,
+    sliding_at_once,
+)
 from slippulse.measurement.transition import STALLED_WAIT_FRACTION, transition_stress
 from slippulse.model.prestress import Prestress
 from slippulse.model.scene import Scene
@@ -150,6 +156,14 @@ def test_half_width_and_lattice_noise_of_known_profiles():
         expected = pytest.approx(gain * np.sum(wave**2) / np.sum(even**2), rel=0.1)
         assert lattice_noise(fields(even + (even > 0.05) * wave)) == expected
     assert np.isnan(lattice_noise(fields(np.zeros(100))))
+
+
+def test_the_level_beyond_is_that_of_the_outermost_step_on_the_right():
+    steps = ((9.0, 0.3), (4.0, 0.5), (-20.0, -0.2))
+    for given, expected in ((steps, 0.3), (steps[2:], 0.6), ((), 0.6)):
+        prestress = Prestress(0.7, 0.6, steps=given)
+        run = simulate(Scene("displacement", prestress, 0.5, dx=0.1, gamma=0.65))
+        assert profile_columns(run, 0.3)["beyond"] == expected
 
 
 def test_number_of_sliding_blocks_and_longest_wait_of_a_front():

@@ -229,7 +229,13 @@ def test_a_scene_is_sampled_as_far_as_its_fronts_can_go(shipped):
     for given, expected in (
         (profile, 20.0 / 0.6 + 3.0),
         (left, 20.0 / np.sqrt(1.0 - 0.3**2) + 3.0),
+        # With a large damping ratio the front is much faster than at a ratio of 1.
+        (
+            left | {"damping_ratio": None, "beta": 0.05},
+            20.0 * sp.theory.front_speed(0.3, 5.0) + 3.0,
+        ),
+        (left | {"damping_ratio": None, "beta": 0.005}, 20.0 / 0.7 + 3.0),
     ):
         config = read_config(shipped, [{"scenes": {"mine": common | given}}])
-        simulation = scene_simulation(config.scenes["mine"], config.model)
+        simulation = scene_simulation(config.scenes["mine"], config.model, 0.01)
         assert simulation.samples.extent == pytest.approx(expected, rel=1e-3)

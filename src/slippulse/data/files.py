@@ -18,7 +18,7 @@ class UnreadableFile(ValueError):
         super().__init__(f"{path}: cannot be read ({text}); delete it and run again")
 
 
-def configuration() -> str:
+def configuration_digest() -> str:
     """Return the digest of this job's configuration; empty text outside the workflow."""
     return os.environ.get(CONFIGURATION_VARIABLE, "")
 

@@ -15,8 +15,8 @@ from xarray.core.indexing import IndexSelResult
 from ..model.checks import short_repr
 from ..model.scene import ATTRIBUTES
 
-# `independent_parameters` tries the parameters in this order.
-PARAMETER_ORDER = ["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES]
+# `independent_parameters` tries the parameters in this order, each of them once.
+PARAMETER_ORDER = tuple(dict.fromkeys(["boundary", "gamma", "damping_ratio", "dx", *ATTRIBUTES]))
 # Two values of a parameter are taken as equal up to this relative difference. The ratio beta/dx is
 # computed by a division, so that equal ratios can differ by rounding.
 EQUALITY_TOLERANCE = 1e-9
@@ -62,7 +62,7 @@ class ParameterIndex(xr.Index):
     def create_variables(
         self, variables: Mapping[Any, xr.Variable] | None = None
     ) -> dict[Hashable, xr.Variable]:
-        """Return the coordinates, with the attributes that they had."""
+        """Return the coordinates of the index, with the attributes of the given variables."""
         attributes = {name: variable.attrs for name, variable in (variables or {}).items()}
         coordinates = {}
         for name, values in self.values.items():
@@ -164,7 +164,7 @@ def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
 
     values : for each parameter, its values in all runs
     """
-    candidates = [name for name in dict.fromkeys(PARAMETER_ORDER) if name in values]
+    candidates = [name for name in PARAMETER_ORDER if name in values]
     kept_names: list[str] = []
     # Number of different combinations of the kept parameters.
     count = 1

@@ -46,24 +46,26 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     Raises ValueError if the numbers of blocks of the runs do not fit the arrays.
     """
     sweep = over_points(sweep)
+    # Single numbers of each run. Three of them only describe the sweep, and are taken out.
     numbers = _arrays_along(sweep, "point")
     numbers.pop("point", None)
+    sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
+    recorded_starts = numbers.pop("row_start", None)
     block_arrays = _arrays_along(sweep, "block")
     sample_arrays = {
         str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep
     }
-    sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
-    recorded_starts = numbers.pop("row_start", None)
-    number_of_blocks = block_arrays.get("x", sizes[:0]).size
+    number_of_blocks = block_arrays["x"].size if "x" in block_arrays else 0
     starts = _starts_of_runs(sizes, recorded_starts, number_of_blocks)
-    versions = {name: value for name, value in sweep.attrs.items() if name == "versions"}
     for index in range(sizes.size):
         blocks = slice(starts[index], starts[index] + sizes[index])
         arrays = {name: values[blocks] for name, values in block_arrays.items()}
         arrays |= {name: values[index] for name, values in sample_arrays.items()}
         # A file may have its texts as Python objects, which have no method `item`.
         attrs = {name: np.asarray(values[index]).item() for name, values in numbers.items()}
-        yield Recorded(arrays, attrs | versions)
+        if "versions" in sweep.attrs:
+            attrs["versions"] = sweep.attrs["versions"]
+        yield Recorded(arrays, attrs)
 
 
 def _starts_of_runs(
@@ -74,14 +76,16 @@ def _starts_of_runs(
     Raises ValueError if the blocks of the runs do not fit the arrays.
 
     sizes : number of blocks of each run
-    recorded_starts : the result, if the sweep contains it; otherwise the runs follow one another
-    number_of_blocks : length of the arrays
+    recorded_starts : the numbers that the sweep has recorded (its variable row_start); if None, the
+        blocks of the runs follow one another
+    number_of_blocks : length of the arrays that contain the blocks of all runs
     """
     if recorded_starts is None:
+        # Each run begins where the previous one ends.
         starts = np.cumsum(sizes) - sizes
         is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
     else:
-        # The runs may be a selection, whose blocks are only some of all blocks.
+        # If runs were selected from a sweep, the arrays still contain the blocks of all its runs.
         starts = recorded_starts
         is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
     allowed = "numbers of blocks whose sum is the length of x"
@@ -91,14 +95,17 @@ def _starts_of_runs(
 
 def over_points(sweep: xr.Dataset) -> xr.Dataset:
     """Convert a grid of runs, or a single selected run, to a sweep along the dimension "point"."""
-    # These variables have one value for each run. Their dimensions are those of the runs.
-    names = [name for name in ("row_start", "run_flags") if name in sweep.variables]
-    run_dimensions = sweep[names[0]].dims if names else ("point",)
+    # row_start and run_flags have one value for each run. So their dimensions are "point", or the
+    # axes of a grid of runs. For a single selected run they have no dimension.
+    run_dimensions: tuple = ("point",)
+    if "row_start" in sweep.variables:
+        run_dimensions = sweep["row_start"].dims
+    elif "run_flags" in sweep.variables:
+        run_dimensions = sweep["run_flags"].dims
     if run_dimensions == ("point",):
         return sweep
     if run_dimensions:
         sweep = sweep.stack(point=run_dimensions).reset_index("point")
-    # A single selected run has no dimension of runs.
     number_of_runs = sweep.sizes.get("point", 1)
     variables = {}
     for name, variable in sweep.variables.items():

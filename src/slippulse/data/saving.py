@@ -11,21 +11,21 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from .files import configuration, write_whole
+from .files import configuration_digest, write_whole
 
 
 def save_dataset(dataset: xr.Dataset, path: str | Path) -> None:
     """Write a Dataset as netCDF-4; equal data give equal bytes.
 
-    Each coordinate must have the name of its dimension. In the workflow, the digest of the
-    configuration is added to the attributes.
+    Each coordinate must have the name of its dimension. In the workflow, the digest (checksum) of
+    the configuration is added to the attributes. The file is either complete or absent.
     """
-    if configuration():
-        dataset = dataset.assign_attrs(configuration=configuration())
-    write_whole(path, lambda unfinished: _write(dataset, unfinished))
+    if configuration_digest():
+        dataset = dataset.assign_attrs(configuration=configuration_digest())
+    write_whole(path, lambda unfinished: _write_netcdf(dataset, unfinished))
 
 
-def _write(dataset: xr.Dataset, path: Path) -> None:
+def _write_netcdf(dataset: xr.Dataset, path: Path) -> None:
     """Write a Dataset to a new file."""
     with path.open("w+b") as target, h5py.File(target, "w", track_order=True) as file:
         file.attrs.update(dataset.attrs)

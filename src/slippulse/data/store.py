@@ -26,12 +26,13 @@ def load_dataset(path: str | Path) -> xr.Dataset:
         with open(path, "rb") as source, h5py.File(source) as file:
             items = {name: h5py.h5d.open(file.id, name.encode()) for name in file}
             attributes = {name: _attributes(item) for name, item in items.items()}
-            dimensions = _take_dimensions(file, items, attributes)
+            dimensions = _dimensions_of_variables(file, items, attributes)
             variables = {}
             for name, item in items.items():
-                # The file also has an item for each dimension without a coordinate. Such an item is
-                # not a variable, and its attribute NAME says so.
+                # These two attributes describe dimensions. They are not part of the Dataset.
+                attributes[name].pop("REFERENCE_LIST", None)
                 scale_name = attributes[name].pop("NAME", b"")
+                # An item with such a NAME is a dimension without a coordinate, not a variable.
                 if not scale_name.startswith(BARE_DIMENSION):
                     variables[name] = dimensions[name], _values(item), attributes[name]
             return xr.Dataset(variables, attrs=file.attrs)
@@ -39,20 +40,20 @@ def load_dataset(path: str | Path) -> xr.Dataset:
         raise UnreadableFile(path, error) from error
 
 
-def _take_dimensions(
+def _dimensions_of_variables(
     file: h5py.File, items: dict[str, h5py.h5d.DatasetID], attributes: dict[str, dict[str, Any]]
 ) -> dict[str, list[str]]:
-    """Return the names of the dimensions of each variable, from the attributes of all of them.
+    """Return the names of the dimensions of each variable.
 
-    Each dimension is stored with the attribute REFERENCE_LIST, which lists the variables and axes
-    that it belongs to, and which is removed here. A variable that is in no such list is a
+    A dimension is an item of the file. Its attribute REFERENCE_LIST lists the variables that have
+    the dimension, each with the number of the axis. A variable that is in no such list is a
     coordinate: its dimension has its own name.
     """
     dimensions = {item: [name] * item.rank for name, item in items.items()}
-    for name, attributes_of_item in attributes.items():
-        for reference, axis in attributes_of_item.pop("REFERENCE_LIST", ()):
-            referring_item = h5py.h5r.dereference(reference, file.id)
-            dimensions[referring_item][axis] = name
+    for dimension, attributes_of_dimension in attributes.items():
+        for reference, axis in attributes_of_dimension.get("REFERENCE_LIST", ()):
+            variable = h5py.h5r.dereference(reference, file.id)
+            dimensions[variable][axis] = dimension
     return {name: dimensions[item] for name, item in items.items()}
 
 

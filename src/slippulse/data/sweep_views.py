@@ -33,6 +33,7 @@ def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     coordinates = list(parameters)
     if "row_size" in sweep:
         sizes = sweep["row_size"].values
+        # Each run begins where the previous one ends.
         starts = np.cumsum(sizes) - sizes
         attributes = {"units": "1", "long_name": VARIABLES["row_start"]}
         sweep = sweep.assign_coords(row_start=("point", starts, attributes))
@@ -129,9 +130,9 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
 
 
 def _default_axes(sweep: xr.Dataset) -> list[str]:
-    """Return the parameters of which `sweep` was given lists.
+    """Return the parameters that had a list of values when the function `sweep` made this sweep.
 
-    If there are none, return the parameters that differ between the runs.
+    If none had a list, return the parameters that differ between the runs.
     """
     listed_names = sweep.attrs.get(AXES_ATTRIBUTE, "").split()
     axes = [name for name in listed_names if name in sweep.coords]

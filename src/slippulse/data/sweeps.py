@@ -31,11 +31,11 @@ def versions() -> str:
     return ", ".join(f"{package} {version(package)}" for package in PACKAGES)
 
 
-def labelled(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) -> xr.Dataset:
-    """Return a sweep with additional numbers for each run.
+def with_run_labels(data: xr.Dataset, labels: Sequence[dict], record: Sequence[str]) -> xr.Dataset:
+    """Return a sweep with additional numbers (labels) for each run.
 
-    labels : the numbers by name, one mapping for each run; if empty, the sweep is returned as it is
-    record : the groups that the sweep has recorded, see `combine`
+    labels : one dict of numbers by name for each run; if empty, the sweep is returned as it is
+    record : the groups that the sweep has recorded, of "fronts", "fields" and "samples"
     """
     if not labels:
         return data

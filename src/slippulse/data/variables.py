@@ -67,7 +67,7 @@ VARIABLES |= {
 }
 
 
-def described(data: xr.Dataset) -> xr.Dataset:
+def with_descriptions(data: xr.Dataset) -> xr.Dataset:
     """Add the attributes units and long_name to each variable of a Dataset, and return it."""
     for name, variable in data.variables.items():
         variable.attrs = {"units": "1", "long_name": VARIABLES[str(name)]} | variable.attrs

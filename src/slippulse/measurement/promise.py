@@ -70,7 +70,7 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
         names.update(PULSE_NUMBERS)
     # The largest velocity grows without limit between two fronts that continue to run. It tends to
     # a limit only if the left front is arrested and the pulse runs into pre-stress 0. The column
-    # "beyond" has the level beyond the last step of the pre-stress.
+    # "beyond" has the level beyond the outermost step on the right.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
         names.add("largest_velocity")
     if run["boundary"] == "stress" and (

@@ -99,15 +99,17 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
 def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
     """Return the columns of a run that describe its pre-stress, in addition to PARAMETERS.
 
-    beyond : level into which the right front runs: that of the last step, if there are steps
+    beyond : level into which the right front runs: that of the outermost step on the right, or the
+        right level if there is none
     profile, seed : labels of the profile, if the run has them
     steps_and_bumps : see `shortened_table`; this column and the next ones only for a table
     lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`
     """
     profile = prestress_from(run.attrs)
-    row = {"beyond": run.attrs["right"]}
-    if profile.steps:
-        _, row["beyond"] = profile.steps[-1]
+    steps_on_right = [step for step in profile.steps if step[0] > 0.0]
+    # Each step is a pair of its position and its level.
+    _, outermost_level = max(steps_on_right, default=(0.0, run.attrs["right"]))
+    row = {"beyond": outermost_level}
     row |= {name: run.attrs[name] for name in LABELS if name in run.attrs}
     if profile.points:
         row["steps_and_bumps"] = shortened_table(run.attrs["steps_and_bumps"])

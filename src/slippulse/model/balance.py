@@ -21,7 +21,7 @@ from .prestress import Interval, Prestress
 # Distances from the centre of a Gaussian, in units of its width, at which the walk of
 # `_nearest_balance` stops. Between two of them the pre-stress changes its sign at most once, unless
 # it hardly crosses 0.
-OFFSETS_FROM_GAUSSIANS = np.linspace(-5.0, 5.0, 41).tolist()
+OFFSETS_FROM_GAUSSIANS = np.linspace(-5.0, 5.0, 41)
 
 
 def integral(prestress: Prestress, lower: float, upper: float) -> float:
@@ -217,11 +217,9 @@ def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
     Intervals are divided where the background changes its sign, and into short parts near
     Gaussians.
     """
-    positions = [
-        centre + offset * width
-        for centre, width in prestress.gaussians
-        for offset in OFFSETS_FROM_GAUSSIANS
-    ]
+    positions: list[float] = []
+    for centre, width in prestress.gaussians:
+        positions += (centre + width * OFFSETS_FROM_GAUSSIANS).tolist()
     for left, right, left_value, right_value in prestress.intervals:
         if left_value * right_value < 0.0:
             positions.append(left - left_value * (right - left) / (right_value - left_value))

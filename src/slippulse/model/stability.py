@@ -57,7 +57,7 @@ def largest_step(
         # large damping; the equal form below does not.
         critical = 2.0 / math.sqrt(4.0 + gamma_dx2)
         damping = damping_ratio + 0.25 * drag
-        return critical**2 / (math.sqrt(critical**2 + damping**2) + damping)
+        return critical**2 / (math.hypot(critical, damping) + damping)
     # The results of `_taylor_bound` are cached, and rounded arguments find one more often.
     rounded = [float(f"{value:.6g}") for value in (damping_ratio, gamma_dx2, drag)]
     return _taylor_bound(order, *rounded)

@@ -90,26 +90,27 @@ def _check_drawable(run: object) -> None:
 def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     """Draw the panels, in SI units if a layer is given."""
     table = _drawn_table(run)
-    roles = by_role(table if layer is None else table_in_si(table, layer))
-    has_map = "map" in roles
-    # A run in which no block was released has no front and no trailing edge.
-    no_rows = table.iloc[:0]
-    roles = {"front": no_rows, "trailing": no_rows} | roles
+    # The rows of the table by their role: what they show, such as "map" or "front".
+    rows_by_role = by_role(table if layer is None else table_in_si(table, layer))
+    # A run in which no block was released has no rows of the front and of the trailing edge.
+    for role in ("front", "trailing"):
+        rows_by_role.setdefault(role, table.iloc[:0])
     figure = Picture(figsize=(PAGE_WIDTH, 2.8), layout="constrained")
     panels = figure.subplots(1, 3, sharey=True, width_ratios=(0.2, 1.0, 0.3))
     prestress_axes, map_axes, slip_axes = panels
-    space_time.draw_profile(prestress_axes, roles)
-    if has_map:
-        space_time.draw_map(map_axes, roles)
+    space_time.draw_profile(prestress_axes, rows_by_role)
+    if "map" in rows_by_role:
+        space_time.draw_map(map_axes, rows_by_role)
         if run.attrs.get("limit_reason"):
-            _hatch_unknown(map_axes, run, roles)
+            _hatch_unknown(map_axes, run, rows_by_role)
             figure.suptitle(f"hatched: not known, because {run.attrs['limit_reason']}")
     else:
-        space_time.draw_edges(map_axes, roles, roles["end"]["time"].iloc[0])
+        space_time.draw_edges(map_axes, rows_by_role, rows_by_role["end"]["time"].iloc[0])
     if np.isfinite(run["release_time"]).any():
         map_axes.legend(loc="upper left")
-    slip_axes.plot(roles["profile"]["value"], roles["profile"]["position"], color=BLUE)
-    slip_axes.set_xlabel(with_unit(r"slip $u$", roles, "slip"))
+    final_slip = rows_by_role["profile"]
+    slip_axes.plot(final_slip["value"], final_slip["position"], color=BLUE)
+    slip_axes.set_xlabel(with_unit(r"slip $u$", rows_by_role, "slip"))
     return figure
 
 
@@ -134,12 +135,12 @@ def _drawn_table(run: xr.Dataset) -> pd.DataFrame:
     return pd.concat(rows, ignore_index=True)
 
 
-def _hatch_unknown(axes: Axes, run: xr.Dataset, roles: dict[str, pd.DataFrame]) -> None:
+def _hatch_unknown(axes: Axes, run: xr.Dataset, rows_by_role: dict[str, pd.DataFrame]) -> None:
     """Hatch the part of the map in which the exact solution is not known."""
     is_unknown = run["sample_velocity"].isnull().T
     # The axes may be in SI units. These factors convert dimensionless numbers to their units.
-    time_scale = roles["end"]["time"].iloc[0] / run.attrs["end_time"]
-    drawn_positions = roles["profile"]["position"]
+    time_scale = rows_by_role["end"]["time"].iloc[0] / run.attrs["end_time"]
+    drawn_positions = rows_by_role["profile"]["position"]
     position_scale = np.ptp(drawn_positions) / np.ptp(run["x"].values)
     hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
     times = run["sample_time"] * time_scale

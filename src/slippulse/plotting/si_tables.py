@@ -42,8 +42,10 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     table = pd.concat([table, pd.DataFrame(strengths)], ignore_index=True)
     table = table if "unit" in table else table.assign(unit="")
     axis_units = _convert_coordinates(table, layer)
-    # The quantity in the column `value` of each row, NaN for a dimensionless number.
+    # The quantity in the column `value` of each row. The role determines it, or else the column
+    # `series`. It is NaN for a dimensionless number.
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
+    # All values of one quantity on the axes get the same unit.
     is_on_axis = table["role"].isin(AXIS_ROLES)
     for quantity, rows in table[is_on_axis].groupby(quantities[is_on_axis]):
         axis_units[str(quantity)] = _convert_values(table, rows.index, str(quantity), layer)
@@ -78,12 +80,12 @@ def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: L
     return unit.text
 
 
-def with_unit(label: str, roles: dict[str, pd.DataFrame], name: str) -> str:
+def with_unit(label: str, rows_by_role: dict[str, pd.DataFrame], name: str) -> str:
     """Append the unit of an axis to its label, if the table is in SI units.
 
     name : the column or quantity on the axis
     """
-    if "unit" not in roles:
+    if "unit" not in rows_by_role:
         return label
-    units = roles["unit"].set_index("series")["unit"]
+    units = rows_by_role["unit"].set_index("series")["unit"]
     return f"{label} ({units[name]})"

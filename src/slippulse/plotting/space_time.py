@@ -52,24 +52,25 @@ def run_table(run: xr.Dataset) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(rows), velocity_rows(run), prestress_rows(run), *edge_rows(run)])
 
 
-def run_title(roles: dict[str, pd.DataFrame]) -> str:
+def run_title(rows_by_role: dict[str, pd.DataFrame]) -> str:
     """Return a title with the boundary, pre-stress, damping and flags of a run.
 
     The law of friction is named if it is not that of the paper.
     """
-    if "unit" in roles:
-        return _append_remarks(_title_in_si(roles["parameter"]), roles)
-    parameters = roles["parameter"].set_index("series")["value"]
-    parameters["tau_0"] = parameters["left"]
+    if "unit" in rows_by_role:
+        return _append_remarks(_title_in_si(rows_by_role["parameter"]), rows_by_role)
+    parameters = rows_by_role["parameter"].set_index("series")["value"]
     held = parameters["gamma"] > 0.0
     names = ["gamma"] if held else []
     # The levels far away do not describe a table of pre-stress.
-    if "table" not in roles:
+    if "table" not in rows_by_role:
         has_equal_levels = parameters["left"] == parameters["right"]
         names += ["tau_0"] if has_equal_levels else ["left", "right"]
+        parameters["tau_0"] = parameters["left"]
     names += ["width", "damping_ratio", "dx"]
-    named = [name for name in names if np.isfinite(parameters[name])]
-    return _append_remarks(conditions(held, **parameters[named]), roles)
+    # The width is NaN if the pre-stress has no Gaussian.
+    finite_names = [name for name in names if np.isfinite(parameters[name])]
+    return _append_remarks(conditions(held, **parameters[finite_names]), rows_by_role)
 
 
 def _title_in_si(parameters: pd.DataFrame) -> str:
@@ -83,37 +84,39 @@ def _title_in_si(parameters: pd.DataFrame) -> str:
     return rf"$H =$ {text['thickness']}, {condition_on_top}, $b = {ratio}$, $\Delta x =$ {dx}"
 
 
-def _append_remarks(title: str, roles: dict[str, pd.DataFrame]) -> str:
+def _append_remarks(title: str, rows_by_role: dict[str, pd.DataFrame]) -> str:
     """Append the remarks of a run to a title: its table of pre-stress, friction law and flags.
 
-    Each remark is the text in the column series of its role. Most runs have none.
+    A remark is a row with the role table, friction or flag, whose column series has the text. Most
+    runs have none.
     """
-    if "table" in roles:
-        title += f", {roles['table']['series'].iloc[0]}"
-    if "friction" in roles:
-        title += f", {roles['friction']['series'].iloc[0]}"
-    if "flag" in roles:
-        title += f", flagged: {roles['flag']['series'].iloc[0]}".replace("_", " ")
+    if "table" in rows_by_role:
+        title += f", {rows_by_role['table']['series'].iloc[0]}"
+    if "friction" in rows_by_role:
+        title += f", {rows_by_role['friction']['series'].iloc[0]}"
+    if "flag" in rows_by_role:
+        title += f", flagged: {rows_by_role['flag']['series'].iloc[0]}".replace("_", " ")
     return title
 
 
 def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     """Return the lowest and highest position to draw.
 
-    They enclose the released blocks (all blocks if none was released) with a margin. On a side on
-    which released blocks lie beyond the sampled positions, the range ends at the outermost sample.
+    They enclose the released blocks (all blocks if none was released) with a margin. On a side
+    where the samples end before these blocks, the range ends at the outermost sample.
     """
     released = run["x"].values[np.isfinite(run["release_time"].values)]
     drawn = released if released.size else run["x"].values
-    margin = max(MARGIN_FRACTION * (drawn[-1] - drawn[0]), run.attrs["dx"])
+    lowest, highest = drawn[0], drawn[-1]
+    margin = max(MARGIN_FRACTION * (highest - lowest), run.attrs["dx"])
     sample_count = run.sizes.get("sample_position", 0)
     if sample_count < 2:
-        return float(drawn[0] - margin), float(drawn[-1] + margin)
-    first, last = run["sample_position"].values[[0, -1]]
+        return float(lowest - margin), float(highest + margin)
+    first_sample, last_sample = run["sample_position"].values[[0, -1]]
     # The margin is at least three intervals between samples wide.
-    margin = max(margin, 3.0 * (last - first) / (sample_count - 1))
-    lower = drawn[0] - margin if drawn[0] > first else first
-    upper = drawn[-1] + margin if drawn[-1] < last else last
+    margin = max(margin, 3.0 * (last_sample - first_sample) / (sample_count - 1))
+    lower = lowest - margin if first_sample < lowest else first_sample
+    upper = highest + margin if last_sample > highest else last_sample
     return float(lower), float(upper)
 
 
@@ -186,18 +189,18 @@ def edge_rows(run: xr.Dataset) -> list[pd.DataFrame]:
     ]
 
 
-def draw_profile(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
+def draw_profile(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     """Draw the pre-stress on the horizontal axis and the position on the vertical axis."""
-    rows, in_si = roles["prestress"], "unit" in roles
+    rows, in_si = rows_by_role["prestress"], "unit" in rows_by_role
     if in_si:
-        _mark_strengths(axes, roles["strength"])
+        _mark_strengths(axes, rows_by_role["strength"])
     else:
         axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
     axes.margins(x=0.12)
     axes.xaxis.set_major_locator(MaxNLocator(2, integer=not in_si))
-    label = with_unit("stress" if in_si else r"$\tau$", roles, "stress")
-    axes.set(xlabel=label, ylabel=with_unit(r"position $x$", roles, "position"))
+    label = with_unit("stress" if in_si else r"$\tau$", rows_by_role, "stress")
+    axes.set(xlabel=label, ylabel=with_unit(r"position $x$", rows_by_role, "position"))
     axes.set_ylim(rows["position"].min(), rows["position"].max())
 
 
@@ -223,15 +226,15 @@ def _mark_strengths(axes: Axes, rows: pd.DataFrame) -> None:
         axes.text(x=strength.value, s=strength.series, **text_look)
 
 
-def draw_map(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
+def draw_map(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     """Draw the slip velocity in colour between the front and the trailing edge."""
     # Samples that are 0 are not in the table.
-    grid = roles["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
-    largest = roles["largest"]["value"].iloc[0]
+    grid = rows_by_role["map"].pivot(index="position", columns="time", values="value").fillna(0.0)
+    largest = rows_by_role["largest"]["value"].iloc[0]
     look = MAP_STYLE | {"shading": "gouraud", "vmax": largest}
     image = axes.pcolormesh(grid.columns, grid.index, grid, **look)
-    draw_edges(axes, roles, grid.columns[-1])
-    label = with_unit(r"slip velocity $\dot u$", roles, "slip_velocity")
+    draw_edges(axes, rows_by_role, grid.columns[-1])
+    label = with_unit(r"slip velocity $\dot u$", rows_by_role, "slip_velocity")
     largest_text = f"{largest:#.3g}".rstrip(".")
     label = f"{label} (largest {largest_text})"
     axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
@@ -253,20 +256,20 @@ def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     axes.set(xlabel=r"time $t$", ylabel=r"position $x$")
 
 
-def draw_edges(axes: Axes, roles: dict[str, pd.DataFrame], end: float) -> None:
-    """Draw the front and the trailing edge.
+def draw_edges(axes: Axes, rows_by_role: dict[str, pd.DataFrame], end: float) -> None:
+    """Draw the front and the trailing edge as lines on the map.
 
-    They cover the map before the release (in white) and after the stick (in grey).
+    The map is covered in white before the front arrives, and in grey after the trailing edge.
 
     end : the time at the right end of the axis
     """
-    front = roles["front"].sort_values("position")
-    trailing = roles["trailing"].sort_values("position")
-    axes.set(xlim=(0.0, end), xlabel=with_unit(r"time $t$", roles, "time"))
+    front = rows_by_role["front"].sort_values("position")
+    trailing = rows_by_role["trailing"].sort_values("position")
+    axes.set(xlim=(0.0, end), xlabel=with_unit(r"time $t$", rows_by_role, "time"))
     axes.tick_params(labelleft=False)
     if front.empty:
         return
-    positions = roles["prestress"]["position"]
+    positions = rows_by_role["prestress"]["position"]
     # Beyond the front, blocks are at rest until the end.
     release = np.interp(positions, front["position"], front["time"], left=end, right=end)
     axes.fill_betweenx(positions, 0.0, release, color="white", linewidth=0.0, zorder=1.5)

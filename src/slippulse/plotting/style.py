@@ -24,7 +24,7 @@ from matplotlib.ticker import NullFormatter
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from ..data.files import configuration, write_whole
+from ..data.files import configuration_digest, write_whole
 from ..model.scene import SCENE_NUMBERS
 
 # Keyword arguments of Matplotlib that set colours, line widths and the like.
@@ -256,12 +256,13 @@ def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
         axes.plot(rows[x], rows["level"], marker, **{"color": colour, "label": regime} | look)
 
 
-def labelled(panels: Sequence[Axes]) -> list[Artist]:
+def legend_handles(panels: Sequence[Axes]) -> list[Artist]:
     """Return one artist for each label in the panels, for a legend that all panels share."""
-    handles: dict[object, Artist] = {}
+    artist_by_label: dict[object, Artist] = {}
     for axes in panels:
-        handles |= {artist.get_label(): artist for artist in axes.get_legend_handles_labels()[0]}
-    return list(handles.values())
+        artists, labels = axes.get_legend_handles_labels()
+        artist_by_label |= zip(labels, artists, strict=True)
+    return list(artist_by_label.values())
 
 
 def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
@@ -283,7 +284,7 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
     canvas.draw()
     # The PDF has the layout of the PNG. With a layout engine it would be drawn twice.
     figure.set_layout_engine(None)
-    source = f"configuration {configuration()}" if configuration() else None
+    source = f"configuration {configuration_digest()}" if configuration_digest() else None
     metadata = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": source}
     write_whole(png, lambda path: _save_png(canvas, path, source))
     write_whole(pdf, lambda path: figure.savefig(path, format="pdf", metadata=metadata))

@@ -85,8 +85,9 @@ def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
-    if np.isfinite(pulse.front) and pulse.pulses != 1:
-        return "several" if pulse.pulses else "stopped"
+    number_of_pulses = pulse.pulses
+    if np.isfinite(pulse.front) and number_of_pulses != 1:
+        return "several" if number_of_pulses > 1 else "stopped"
     is_measured = np.isfinite([pulse.width, pulse.speed]).all()
     is_coulomb = read_recorded_law(run.attrs)["law"] == "coulomb"
     has_exact_pulse = is_coulomb and not used_extra_terms(run.attrs)
@@ -114,6 +115,7 @@ def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> 
     """
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
+    # The layer at the front in which damping matters.
     layer_thickness = beta * pulse.speed / (pulse.speed**2 - 1.0)
     if layer_thickness > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
         return "thick_front"
@@ -141,14 +143,15 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None 
     if not has_paper_pulse or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
     paper = paper_pulse(tau, run.attrs["gamma"])
+    # Fields as functions of xi, the position relative to the measured front.
     fields = comoving(run, pulse)
-    # Positions are relative to the front here: xi of the blocks, and that of the peak.
     xi_of_peak = pulse.peak_distance - pulse.front
     distance_to_peak = fields["xi"] - xi_of_peak
     # The two outermost blocks are left out, because the lattice rounds the corners of the cosine.
     is_compared = np.abs(distance_to_peak) < 0.5 * paper.width - 2.0 * run.attrs["dx"]
     if np.count_nonzero(is_compared) < 4:
         return np.nan
+    # In the paper's pulse, the same distances are measured from its own peak.
     paper_fields = paper.profile(distance_to_peak[is_compared] + paper.peak_position)
     deviation = fields["slip_velocity"][is_compared] - paper_fields.velocity
     return float(np.max(np.abs(deviation)) / paper.peak_velocity)

@@ -103,13 +103,13 @@ def _measure_run(run: xr.Dataset) -> dict[str, Any]:
     check_that(is_run, "run", run, "a Dataset that simulate returned")
     layer = layer_of(run.attrs)
     if layer is None:
-        return _numbers(run, {})
+        return _measure_in_model_units(run, {})
     # The names of the numbers ``trailing_edge_*`` contain times, which would be those of the model.
-    numbers = _numbers(layer.from_si(run), {"trailing_times": []})
+    numbers = _measure_in_model_units(layer.from_si(run), {"trailing_times": []})
     return layer.numbers_to_si(numbers)
 
 
-def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
+def _measure_in_model_units(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
     """Return the measured numbers of a run that is in the units of the model.
 
     settings : settings that differ from MEASURE_SETTINGS
@@ -122,6 +122,7 @@ def _numbers(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
     profile = prestress_from(run.attrs)
     is_held = run.attrs["boundary"] == "displacement"
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
+        # `measured_row` leaves this transition out, except if the pre-stress is a table of points.
         numbers |= first_stick(run)
     has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:

@@ -37,7 +37,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
                 level=far_level(run, side),
                 gamma=run.gamma,
                 dx=run.dx,
-                ratio=rounded_damping_ratio(run),
+                damping_ratio=rounded_damping_ratio(run),
                 release=run.release,
             )
             for run in runs
@@ -65,12 +65,14 @@ def exact_front_speeds(runs: list[Run], side: str) -> np.ndarray:
 
 
 @cache
-def _lattice_speed(level: float, gamma: float, dx: float, ratio: float, release: str) -> float:
+def _lattice_speed(
+    level: float, gamma: float, dx: float, damping_ratio: float, release: str
+) -> float:
     """Return the front speed on a lattice with leaf springs, into pre-stress of a level.
 
     NaN without leaf springs, if they hardly change the speed, or if they are so strong that no
-    front outruns the waves. ratio is the damping ratio beta/dx.
+    front outruns the waves.
     """
-    if gamma == 0.0 or (ratio > 0.0 and gamma * dx**2 < MIN_GAMMA_DX2):
+    if gamma == 0.0 or (damping_ratio > 0.0 and gamma * dx**2 < MIN_GAMMA_DX2):
         return np.nan
-    return value_or_nan(lambda: lattice_front_speed(level, gamma, dx, ratio, release))
+    return value_or_nan(lambda: lattice_front_speed(level, gamma, dx, damping_ratio, release))

@@ -32,6 +32,7 @@ def _row(run: Run, left_speed: float, right_speed: float) -> dict[str, float]:
         "exact": _exact_pulse(run, right_level, right_speed),
     }
     row: dict[str, float] = {}
+    # If there is no pulse, it is None. It then has none of the attributes, so that they are NaN.
     for source, pulse in right_pulses.items():
         for name in ("width", "slip", "peak_velocity"):
             row[f"{source}_pulse_{name}"] = getattr(pulse, name, np.nan)

@@ -53,8 +53,9 @@ def _regime_with_steps(run: Run) -> str:
     if not (pulse_forms and steps_are_ahead):
         return UNDECIDED
     # The velocity of the pulse grows by half the integral of the pre-stress that it crosses. So the
-    # sign of the pre-stress beyond the last step decides whether it grows or decays.
-    return pulse_regime("one-way", change=far_level(run, "right"), tolerance=0.0)
+    # pulse grows, decays or is steady if the level beyond the last step is positive, negative or 0.
+    level_beyond_steps = far_level(run, "right")
+    return pulse_regime("one-way", change=level_beyond_steps, tolerance=0.0)
 
 
 def final_regime(

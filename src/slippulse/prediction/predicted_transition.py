@@ -62,8 +62,9 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
 def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     """Return the balance distance, the numbers of the transition, and those of the far pulse.
 
-    They exist if the pre-stress far away is negative on the left and 0 on the right. Except for the
-    balance distance, it must also be a single Gaussian between these levels.
+    All numbers need a pre-stress that is negative far to the left and 0 far to the right. Except
+    for the balance distance, they also need a single Gaussian between these levels. Without theory,
+    the numbers of the transition are NaN, and the others are left out.
     """
     row = {**NO_TRANSITION}
     profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
@@ -103,8 +104,8 @@ def _arrest(left: float, damping_ratio: float, release: str, fraction: float) ->
     the columns of `predictions`.
     """
     crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
-    # Very close to the balance position the left front is held by forces that the theory neglects.
-    # The theory then raises an error instead of returning a time.
+    # Very close to the balance position, the left front is moved by waves that started where the
+    # pre-stress is 0 to all digits. An error is then raised instead of returning a time.
     time, length = value_or(lambda: crack.transition(fraction), (math.nan, math.nan))
     return {
         "exact_largest_velocity": crack.peak_velocity,
@@ -122,13 +123,15 @@ def _half_width(crack: ArrestingCrack) -> float:
     largest where the pre-stress is 0, and half as large once on each side.
     """
 
-    def excess_over_half(x: float) -> float:
-        """Return twice the slip velocity of the wave that started at x, minus the peak velocity."""
-        return integral(crack.prestress, x, crack.end) - crack.peak_velocity
+    def excess_over_half_peak(x: float) -> float:
+        """Return the slip velocity of the wave that started at x, minus half the peak velocity."""
+        return 0.5 * integral(crack.prestress, x, crack.end) - 0.5 * crack.peak_velocity
 
-    ahead = root_between(excess_over_half, crack.slow_start, crack.end, xtol=1e-12)
-    rear = root_between(excess_over_half, crack.balance_position, crack.slow_start, xtol=1e-12)
-    # x - t does not change along a wave. The width is the difference of these values.
+    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0.
+    start_of_peak = crack.slow_start
+    ahead = root_between(excess_over_half_peak, start_of_peak, crack.end, xtol=1e-12)
+    rear = root_between(excess_over_half_peak, crack.balance_position, start_of_peak, xtol=1e-12)
+    # x - t does not change along a wave. The width is the difference of the two values.
     ahead_minus_time = ahead - float(crack.fronts.arrival(ahead))
     rear_minus_time = rear - crack.time_at(rear)
     return float(ahead_minus_time - rear_minus_time)

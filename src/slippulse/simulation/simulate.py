@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 import xarray as xr
 
 from ..data.sweep_views import with_parameters
-from ..data.variables import described
+from ..data.variables import with_descriptions
 from ..model.checks import check_kind, check_number, check_that
 from ..model.cost import bound_cost
 from ..model.samples import RECORD_GROUPS, Samples
@@ -83,7 +83,7 @@ def simulate(
     with announced_compilation():
         solution = _solve(scene, samples, progress)
     # The Dataset also contains the flags of the run, and the units and names of its variables.
-    run = described(recorded(scene, samples, solution).dataset())
+    run = with_descriptions(recorded(scene, samples, solution).dataset())
     if strict and run.attrs["run_flags"]:
         details = _flag_details(scene, run.attrs)
         raise UnresolvedRun(f"the run is flagged: {run.attrs['run_flags']}{details}")
@@ -169,7 +169,7 @@ def run_sweep(
         progress = make_bar(len(scenes)) if progress else None
     with announced_compilation():
         data = solve_sweep(_solve, scenes, samples, record, int(threads), progress)
-    return with_parameters(described(data))
+    return with_parameters(with_descriptions(data))
 
 
 def _check_scenes(scenes: Sequence[Scene]) -> None:

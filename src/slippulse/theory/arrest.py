@@ -54,21 +54,23 @@ class ArrestingCrack(ExplainsRemovedNames):
     ) -> None:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
-        # Beyond this position the pre-stress is 0, and the right front runs at the wave speed.
+        # Here the Gaussian and the table of the pre-stress have ended. Beyond, the pre-stress is 0,
+        # and the right front runs at the wave speed.
         width = prestress.width or 0.0
         self.end = max([GAUSSIAN_END_IN_WIDTHS * width, *(x for x, _ in prestress.points)])
-        # The right front, and the left front as far as it is faster than the waves.
+        # The right front up to there, and the left front as far as it is faster than the waves.
         self.fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=self.end
         )
-        # The position where the left front becomes slow, because tau falls to 0 there.
-        self.slow_start = float(self.fronts.edges[0])
+        # The left front becomes slow where its fast section ends, because tau falls to 0 there.
+        left_end_of_fast_fronts = self.fronts.edges[0]
+        self.slow_start = float(left_end_of_fast_fronts)
 
     def _entry_of(self, position: float) -> float:
-        """Return where the wave entered the rupture that arrives at the left front at a position.
+        """Return where the wave that meets the left front at a position has entered the rupture.
 
-        The wave runs to the left. So it entered on the right of the position, through a fast front.
-        The integral of tau between the two positions is 0.
+        The wave runs to the left. So it entered farther right, through a fast front. The integral
+        of tau between the two positions is 0.
         """
         integral_from_position_to = partial(integral, self.prestress, position)
         # The curve of the fast fronts ends at self.end.
@@ -114,6 +116,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         # The curve of the right front ends where the pre-stress ends. `front_at` returns this end
         # for any later time.
         right_front = self.fronts.front_at(time, x=0.0, side=1.0)
+        # The last edge of a panel is the end of the curve on the right.
         time_at_end = float(self.fronts.edge_times[-1])
         if time > time_at_end:
             # From there on the right front runs at the wave speed 1.
@@ -147,7 +150,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         # front never reaches.
         fraction = 1.0 - np.geomspace(1.0, 1e-9, SAMPLES_PER_SECTION)[1:]
         on_slow_front = self.slow_start + (self.balance_position - self.slow_start) * fraction
-        # The arrival time t = e + T(e) - x of the slow front is that of `time_at`, for all samples.
+        # The slow front arrives at t = e + T(e) - x, where e is the entry of the wave that meets it
+        # (see `time_at`).
         entries = np.array([self._entry_of(x) for x in on_slow_front])
         x_minus_t_of_slow = 2.0 * on_slow_front - entries - self.fronts.arrival(entries)
         # Along a wave, du/dt - du/dx grows by the integral of the pre-stress that it crosses. Far

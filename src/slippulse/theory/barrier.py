@@ -77,8 +77,8 @@ def barrier_depth(
     panels, reason = _continue_into_barrier(_panels_before_barrier(tau0, speed), tau_barrier)
     if reason != "stops":
         raise ValueError(
-            f"tau_barrier: {tau_barrier!r}, where the front is {reason} at {arguments};"
-            " allowed: levels on which the front is resolved"
+            f"tau_barrier: {tau_barrier!r}, at which the motion of the front is {reason} for"
+            f" {arguments}; allowed: levels at which it is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)
 
@@ -98,18 +98,21 @@ def _panels_before_barrier(tau0: float, speed: float) -> list[Panel]:
     proper_length = math.sqrt((speed - 1.0) * (speed + 1.0)) / speed
     panel_count = max(4, math.ceil(length * proper_length / MAX_PANEL_LENGTH))
     edges = np.linspace(-length, 0.0, panel_count + 1)
-    # In `straight_panels` T = slowness |x|, so that T = x/v at x <= 0 has the slowness -1/v.
+    # `straight_panels` takes the arrival time divided by |x|. The arrival time is x/v = -|x|/v.
     return straight_panels(edges, -1.0 / speed, tau0)
 
 
 def _continue_into_barrier(panels: list[Panel], tau_barrier: float) -> tuple[list[Panel], str]:
-    """Return panels of a front that is continued until it ends, and the reason of its end.
+    """Continue a front into the barrier, panel by panel, until it ends.
 
-    The barrier has the pre-stress tau_barrier and is infinitely long. The elasticity ratio is 1.
+    Return the panels, those before the barrier included, and the reason of the end ("stops" if the
+    front stops). The barrier has the pre-stress tau_barrier everywhere. The elasticity ratio is 1.
     """
     panels = list(panels)
     background = uniform_background(tau_barrier)
     prestress = Prestress(left=tau_barrier, right=tau_barrier, width=None)
+    # The reason is None as long as the front can go on. progress is the state of the front, which
+    # one step hands over to the next.
     reason, progress = None, Progress()
     while reason is None:
         front = SlowFront(Curve(panels), prestress, background, gamma=1.0)

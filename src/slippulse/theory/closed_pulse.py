@@ -76,7 +76,7 @@ class SteadyPulse:
         xi_in_pulse = np.where(is_in_pulse, xi, 0.0)
         sine, cosine = np.sin(q * xi_in_pulse), np.cos(q * xi_in_pulse)
         decay = np.exp(p * xi_in_pulse)
-        # The slip oscillates around tau_0/gamma. At the front slip and strain are 0.
+        # The slip oscillates around tau_0/gamma. At the front, xi = 0, slip and strain are 0.
         slip_in_pulse = self.tau0 / self.gamma * (1.0 - decay * (cosine - p / q * sine))
         slip = np.select([is_in_pulse, is_behind], [slip_in_pulse, self.slip])
         # The derivative by time is -v times the derivative by xi.
@@ -93,9 +93,13 @@ def pulse_at_speed(
 ) -> SteadyPulse:
     """Return the steady pulse (`theory.steady_pulse`) behind a front of speed v.
 
-    A position in the pulse is xi = x - v t. The slip u(xi) oscillates as exp(p xi) cos(q xi) around
-    tau_0/gamma. The pulse ends after half a wavelength, at xi = -pi/q. Raises ValueError if slip
-    does not oscillate, or if a number overflows.
+    A position in the pulse is xi = x - v t. Slip and strain are 0 at the front, xi = 0, so that
+
+        slip     = tau_0/gamma {1 - exp(p xi) [cos(q xi) - p/q sin(q xi)]},
+        velocity = -v tau_0/gamma (p^2 + q^2)/q exp(p xi) sin(q xi).
+
+    The pulse ends where the velocity returns to 0, at xi = -pi/q. Raises ValueError if slip does
+    not oscillate, or if a number overflows.
     """
     check_domains(tau0=tau0, gamma=gamma, beta=beta, rate_strengthening=rate_strengthening)
     check_number("speed", speed, above=1.0)
@@ -104,9 +108,8 @@ def pulse_at_speed(
     try:
         p, q = _growth_and_wavenumber(v, gamma=gamma, beta=beta, alpha=alpha)
         width = float(np.pi / q)
-        # At the front slip and strain are 0. From this the slip at the end of the pulse follows.
         slip = float(tau0 / gamma * (1.0 + np.exp(-p * width)))
-        # The largest slip velocity is at xi = -arctan2(q, p)/q.
+        # The largest slip velocity is at xi = -arctan2(q, p)/q, where sin(q xi) is -q/hypot(p, q).
         amplitude = v * tau0 * np.hypot(p, q) / gamma
         peak = float(amplitude * np.exp(-p / q * np.arctan2(q, p)))
         # Python's floats can overflow without an error.
@@ -158,11 +161,11 @@ def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) 
     # The critical value is exact without damping. Since damping changes it, rate strengthening is
     # named from half of this value on.
     if abs(rate_strengthening) > 0.5 * critical:
-        arguments = f"gamma = {gamma:.6g}, speed = {speed:.6g}"
-        allowed = f"a size below {critical:.6g} (at {arguments}, without beta)"
-        refused = f"rate_strengthening: {rate_strengthening!r}"
-        return f"{refused}; allowed: {allowed}, since otherwise no pulse is steady"
-    return f"speed: {speed:.6g} at gamma = {gamma:.6g}; allowed: values whose pulse can be computed"
+        refused = f"rate_strengthening: {rate_strengthening!r} at {gamma = :.6g}, {speed = :.6g}"
+        allowed = f"less than {critical:.6g} in absolute value (if beta is 0)"
+        return f"{refused}; allowed: {allowed}, since no pulse is steady beyond"
+    allowed = "values at which no number of the pulse is 0 or infinite"
+    return f"speed: {speed:.6g} at {gamma = :.6g}; allowed: {allowed}"
 
 
 def critical_rate_strengthening(gamma: float, speed: float) -> float:

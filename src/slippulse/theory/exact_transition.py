@@ -62,12 +62,15 @@ def exact_transition_displacement(
     fronts = fronts_up_to(reach=2.5 * half_period)
     part = Part(fronts, gamma, until=2.0 * half_period)
     stick = float(part.find_stick_times(np.zeros(1))[0])
-    if not stick < fronts.edge_times[-1]:
-        # Since fronts are faster than the waves, they may have run beyond this distance when x = 0
-        # sticks. For the length of the rupture they are computed again, farther.
+    time_at_end_of_curve = fronts.edge_times[-1]
+    if not stick < time_at_end_of_curve:
+        # When x = 0 sticks, the fronts are already beyond the distance up to which they have been
+        # computed, since they are faster than the waves. They are computed again, up to a distance
+        # that they have certainly not reached at that time.
         speed = float(front_speed(level, damping_ratio, release))
         fronts = fronts_up_to(reach=speed * stick + _distance_to_uniform(prestress))
-    return ExactTransition(stick, 2.0 * fronts.front_at(stick, x=0.0, side=1.0))
+    right_front = fronts.front_at(stick, x=0.0, side=1.0)
+    return ExactTransition(stick, 2.0 * right_front)
 
 
 def _distance_to_uniform(prestress: Prestress) -> float:
@@ -105,9 +108,9 @@ def uniform_transition_time(
     # A tiny tau would lose digits.
     tau = max(tau0, 1e-9)
     # The time is computed at gamma = 1, where it is below 10. Until then only the fronts at a
-    # distance below 10 influence x = 0. The curve is longer than that.
+    # distance below 10 influence x = 0. The curve is longer: 12/(1 - 1/v^2), up to MAX_REACH.
     reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
-    edges = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
-    curve = Curve(straight_panels(edges, slowness, tau))
+    edges_of_panels = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
+    curve = Curve(straight_panels(edges_of_panels, slowness, tau))
     (stick,) = Part(curve, gamma=1.0, until=10.0).find_stick_times(np.zeros(1))
     return float(stick / np.sqrt(float(gamma)))

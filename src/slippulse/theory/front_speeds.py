@@ -40,7 +40,7 @@ class FrontLaw(NamedTuple):
     alpha_dx: float = 0.0
 
     def log_prestress(self, log_excess: np.ndarray, damping_ratio: np.ndarray) -> np.ndarray:
-        """Return ln tau_0 of fronts of speed v, given log_excess = ln(v - 1)."""
+        """Return ln tau_0 of fronts of speed v, given log_excess = ln(v - 1) and beta/dx."""
         return log_prestress(
             np.exp(log_excess), damping_ratio, self.gamma_dx2, self.release, self.alpha_dx
         )
@@ -109,7 +109,7 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
 
 
 def _solved_speeds(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
-    """Return front speeds that are computed numerically, chunk by chunk."""
+    """Return the speeds of fronts into pre-stresses tau, by numerical solution, chunk by chunk."""
     # Fronts of similar speeds are in one chunk, because they share a contour of integration.
     order = np.argsort(first_guess(tau, damping_ratio, release))
     speeds = np.empty(tau.size)
@@ -161,7 +161,7 @@ def slowness_nearly_one(
     """
     minus_log_tau = -np.log(tau)
     b = np.asarray(damping_ratio) if release == "total" else 0.0
-    # This form of the root of a quadratic equation loses no digits.
+    # This form of the root of a quadratic equation loses no digits. 1e-300 avoids 0/0 at tau = 1.
     return 2.0 * minus_log_tau / np.maximum(b + np.sqrt(b**2 + 2.0 * minus_log_tau), 1e-300)
 
 
@@ -200,21 +200,23 @@ def speeds_into(
 ) -> np.ndarray:
     """Return the speeds v of fronts into the pre-stresses tau.
 
-    The unknown is ln(v - 1). Its search begins at min_log_excess, the value of the slowest front.
+    The unknown is ln(v - 1), which is at least min_log_excess. It is found from the value of
+    ln(tau/(1 - tau)), which is nearly linear in the unknown.
     """
-    target = np.log(tau) - np.log1p(-tau)
+    required_values = np.log(tau) - np.log1p(-tau)
 
-    def mismatch(log_excess: np.ndarray, which: np.ndarray) -> np.ndarray:
-        """Return the error of ln(tau/(1 - tau)), which is nearly linear in ln(v - 1).
+    def excess_over_required(log_excess: np.ndarray, fronts: np.ndarray) -> np.ndarray:
+        """Return ln(tau/(1 - tau)) at ln(v - 1) = log_excess, minus the required value.
 
-        ``which`` has the numbers of the fronts.
+        fronts : numbers of the fronts to which the elements of log_excess belong
         """
-        log_tau = front_law.log_prestress(log_excess, front_law.damping_ratios[which])
-        # 1 - tau may be 0 to rounding, and is then replaced by a value below that of any target.
+        log_tau = front_law.log_prestress(log_excess, front_law.damping_ratios[fronts])
+        # 1 - tau may be rounded to 0. It is then replaced by a number that is smaller than any
+        # required 1 - tau.
         log_one_minus_tau = np.log(np.maximum(-np.expm1(log_tau), 1e-17))
-        return log_tau - log_one_minus_tau - target[which]
+        return log_tau - log_one_minus_tau - required_values[fronts]
 
     low, high = np.full(tau.size, min_log_excess), np.full(tau.size, MAX_LOG_EXCESS)
     guess = first_guess(tau, front_law.damping_ratios, front_law.release)
     guess = np.clip(guess, low + 0.1, high - 1.0)
-    return 1.0 + np.exp(increasing_roots(mismatch, guess=guess, lower=low, upper=high))
+    return 1.0 + np.exp(increasing_roots(excess_over_required, guess=guess, lower=low, upper=high))

@@ -115,9 +115,9 @@ def _speed_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
     has_weak_drag = abs(front_law.alpha_dx) < SMALL_CORRECTION * speed
     if not (has_weak_springs and has_weak_drag):
         return None
-    # The relative decrease of the speed is proportional to gamma dx^2/v^2. The factor is 1/24
-    # without damping. Under rule "total" it tends to 1/6 if b v is large, where b = beta/dx; this
-    # limit was found by quadrature.
+    # The relative decrease of the speed is gamma dx^2/v^2 times (b v/6 + 1/24)/(b v + 1), where
+    # b = beta/dx. This is 1/24 without damping. Its limit 1/6 for large b v under rule "total" was
+    # found by quadrature. Under rule "elastic" damping has no influence next to tau_0 = 1.
     b_v = damping_ratio * speed if release == "total" else 0.0
     coefficient = b_v / 6.0 + 1.0 / 24.0
     relative_decrease = gamma_dx2 / speed**2 * coefficient / (b_v + 1.0)
@@ -162,11 +162,11 @@ def _least_prestress(tau0: float, front_law: FrontLaw) -> tuple[float, float]:
     """Return ln(v - 1) of the front with the least pre-stress, and this pre-stress.
 
     Usually it is the slowest front. With strong damping a faster front can have less pre-stress.
-    It is searched only if tau0 is not above the pre-stress of the slowest front. Otherwise exactly
-    one faster front has the pre-stress tau0, and the values of the slowest front are returned.
-    If no front outruns the waves, the pre-stress is 1.
+    Such a front matters only if tau0 is not above the pre-stress of the slowest front. If tau0 is
+    above it, the values of the slowest front are returned without a search.
     """
     if front_law.gamma_dx2 > MAX_GAMMA_DX2:
+        # No front outruns the waves, as if the least pre-stress were 1.
         return 0.0, 1.0
     # ln(v - 1) and the pre-stress of the slowest front.
     slowest = _slowest_log_excess(front_law)
@@ -195,13 +195,15 @@ def _slowest_log_excess(front_law: FrontLaw) -> float:
 def _search_least_prestress(front_law: FrontLaw, slowest: float) -> tuple[float, float]:
     """Return ln(v - 1) of the front with the least pre-stress, and this pre-stress.
 
-    slowest is ln(v - 1) of the slowest front. Faster fronts are searched on a grid, which is
-    narrowed again and again around the lowest value.
+    slowest is ln(v - 1) of the slowest front. The pre-stress is computed on a grid of speeds. The
+    grid is then repeatedly narrowed to the neighbours of the speed with the least pre-stress.
     """
     (damping_ratio,) = front_law.damping_ratios
     slowest_speed = 1.0 + np.exp(slowest)
-    log_range = np.log(slowest_speed * (1.0 + damping_ratio) * (1.0 + front_law.gamma_dx2)) + 5.0
-    speed_increase = np.geomspace(1e-6, np.exp(log_range), SCAN_SPEEDS - 1)
+    # The first grid extends far beyond the speeds that damping and leaf springs influence.
+    scale_of_speeds = slowest_speed * (1.0 + damping_ratio) * (1.0 + front_law.gamma_dx2)
+    largest_increase = np.exp(np.log(scale_of_speeds) + 5.0)
+    speed_increase = np.geomspace(1e-6, largest_increase, SCAN_SPEEDS - 1)
     log_excess = np.append(slowest, np.log(slowest_speed - 1.0 + speed_increase))
     for _ in range(NARROW_SCANS + 1):
         log_tau = front_law.log_prestress(log_excess, np.full(log_excess.size, damping_ratio))
@@ -209,6 +211,7 @@ def _search_least_prestress(front_law: FrontLaw, slowest: float) -> tuple[float,
         log_excess_of_lowest = float(log_excess[lowest])
         least_prestress = float(np.exp(log_tau[lowest]))
         if log_excess_of_lowest == slowest:
+            # No faster front has less pre-stress.
             break
         below = log_excess[max(lowest - 1, 0)]
         above = log_excess[min(lowest + 1, log_excess.size - 1)]

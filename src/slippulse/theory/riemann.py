@@ -65,14 +65,14 @@ MAX_EXPONENT = 300.0
 class StaticValues(NamedTuple):
     """A static solution p at nodes of a curve, and derivatives of the curve by its parameter s.
 
-    slope is dp/dx. The last three are the derivatives of T, of T - x and of T + x.
+    The curve is t = T(x). g is T - x, and h is T + x.
     """
 
     p: np.ndarray
-    slope: np.ndarray
-    d_time: np.ndarray
-    d_t_minus_x: np.ndarray
-    d_t_plus_x: np.ndarray
+    dp_dx: np.ndarray
+    dt_ds: np.ndarray
+    dg_ds: np.ndarray
+    dh_ds: np.ndarray
 
 
 class StaticSolution:
@@ -84,16 +84,22 @@ class StaticSolution:
     """
 
     def __init__(self, curve: Curve, gamma: float) -> None:
+        """Compute p, dp/dx and the derivatives of the curve at the nodes of all panels."""
         if gamma == 0.0:
-            # Without leaf springs the solution with p = p' = 0 at the left end is used.
-            slope = -_integral(curve.source)
-            p = _integral(slope * (curve.x @ NODES_TO_DERIVATIVES.T))
+            # Then p'' = -tau. The solution with p = p' = 0 at the left end of the curve is used.
+            # The source is tau dx/ds.
+            dx_ds = curve.x @ NODES_TO_DERIVATIVES.T
+            dp_dx = -_integrate_to_nodes(curve.source)
+            p = _integrate_to_nodes(dp_dx * dx_ds)
         else:
+            # p is tau convolved with exp(-rate |x|)/(2 rate). This is an integral over tau on the
+            # left of each position, and one over tau on its right. The second one is computed on
+            # the curve mirrored at x = 0, on which the order of panels and nodes is reversed.
             rate = float(np.sqrt(gamma))
-            # The convolution has a part over tau on the left of each position, and a part over tau
-            # on its right. The second one is computed on the mirrored curve.
-            over_left = _convolve_left(rate, x=curve.x, source=curve.source, edges=curve.edges)
-            mirrored = _convolve_left(
+            over_left = _integrate_over_left(
+                rate, x=curve.x, source=curve.source, edges=curve.edges
+            )
+            mirrored = _integrate_over_left(
                 rate,
                 x=-curve.x[::-1, ::-1],
                 source=curve.source[::-1, ::-1],
@@ -101,14 +107,15 @@ class StaticSolution:
             )
             over_right = mirrored[::-1, ::-1]
             p = (over_left + over_right) / (2.0 * rate)
-            slope = 0.5 * (over_right - over_left)
-        derivatives = (
+            dp_dx = 0.5 * (over_right - over_left)
+        dt_ds, dg_ds, dh_ds = (
             values @ NODES_TO_DERIVATIVES.T
             for values in (curve.time, curve.t_minus_x, curve.t_plus_x)
         )
         # The fields of StaticValues at the nodes, [field, panel, node].
-        self.node_values = np.stack([p, slope, *derivatives])
-        self._powers = [NODES_TO_POWERS @ values.T for values in (p, slope)]
+        self.node_values = np.stack([p, dp_dx, dt_ds, dg_ds, dh_ds])
+        # The polynomials of p and dp/dx on each panel, for `evaluate`.
+        self._polynomials = [NODES_TO_POWERS @ values.T for values in (p, dp_dx)]
 
     def values_on(self, panels: slice) -> StaticValues:
         """Return the values at the nodes of some panels, in flat arrays."""
@@ -116,48 +123,53 @@ class StaticSolution:
 
     def evaluate(self, panel: np.ndarray, s: np.ndarray, order: int) -> np.ndarray:
         """Return p (order 0) or dp/dx (order 1) at a parameter s on each of the panels."""
-        return value_and_slope(self._powers[order].take(panel, axis=-1), s)[0]
+        return value_and_slope(self._polynomials[order].take(panel, axis=-1), s)[0]
 
 
-def _integral(values: np.ndarray) -> np.ndarray:
+def _integrate_to_nodes(values: np.ndarray) -> np.ndarray:
     """Return the integral of a function over s, from the left end of the curve to each node.
 
     values are those of the function at the nodes, [panel, node].
     """
-    by_panel = values @ WEIGHTS
-    before_panel = np.cumsum(by_panel) - by_panel
-    return before_panel[:, None] + values @ NODES_TO_INTEGRALS.T
+    over_panel = values @ WEIGHTS
+    over_earlier_panels = np.cumsum(over_panel) - over_panel
+    from_left_end_of_panel = values @ NODES_TO_INTEGRALS.T
+    return over_earlier_panels[:, None] + from_left_end_of_panel
 
 
-def _convolve_left(rate: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return the integral of exp(-rate (x - x')) tau(x') dx' over all x' < x, at the nodes x.
+def _integrate_over_left(
+    rate: float, x: np.ndarray, source: np.ndarray, edges: np.ndarray
+) -> np.ndarray:
+    """Return I(x) = Int exp(-rate (x - x')) tau(x') dx' over all x' < x, at the nodes x.
 
-    x and source, which is tau dx'/ds, are given at the nodes, [panel, node]. The integral is
-    computed from panel to panel: along a panel its value at the left end decays, and the part of
-    the panel itself is added.
+    x and source, which is tau dx/ds, are given at the nodes, [panel, node]. On a panel with the
+    left end a, I(x) = {I(a) + Int_a^x exp(rate (x' - a)) tau(x') dx'} / exp(rate (x - a)).
+
+    edges : the ends of all panels, from left to right
     """
-    # exp(rate (x - left end)) at the nodes of each panel.
+    # exp(rate (x - a)) at the nodes of each panel.
     growth = np.exp(rate * (x - edges[:-1, None]))
-    decays = np.exp(-rate * np.diff(edges))
-    parts_of_panels = decays * ((source * growth) @ WEIGHTS)
-    # Before the curve, tau has the value at its first node: the integral there is tau/rate.
+    decay_over_panel = np.exp(-rate * np.diff(edges))
+    added_by_panel = decay_over_panel * ((source * growth) @ WEIGHTS)
+    # On the left of the curve, tau keeps the value at the first node, so that I is tau/rate.
     first_tau = float(source[0, 0] / (NODES_TO_DERIVATIVES[0] @ x[0]))
     at_left_ends = [first_tau / rate]
-    for decay_of_panel, part in zip(decays[:-1], parts_of_panels[:-1], strict=True):
-        at_left_ends.append(at_left_ends[-1] * decay_of_panel + part)
+    for panel in range(len(x) - 1):
+        at_right_end = at_left_ends[-1] * decay_over_panel[panel] + added_by_panel[panel]
+        at_left_ends.append(at_right_end)
     return (np.array(at_left_ends)[:, None] + (source * growth) @ NODES_TO_INTEGRALS.T) / growth
 
 
 class PanelNodes(NamedTuple):
     """The nodes of some panels, seen from some points (y, t): the arguments of an integrand.
 
-    d_xi is (t - y) - (T - x), and d_eta is (t + y) - (T + x), with a row for each point and a
-    column for each node. kernel(order) returns the kernel K or a derivative of it by its argument,
-    of the same shape. panels are the panels of the curve to which the nodes belong.
+    xi_minus_g is (t - y) - (T - x), and eta_minus_h is (t + y) - (T + x), with a row for each point
+    and a column for each node. kernel(order) returns the kernel K (order 0) or its derivative K' or
+    K'' by its argument, of the same shape. panels are the panels to which the nodes belong.
     """
 
-    d_xi: np.ndarray
-    d_eta: np.ndarray
+    xi_minus_g: np.ndarray
+    eta_minus_h: np.ndarray
     kernel: Callable[[int], np.ndarray | float]
     panels: slice
 
@@ -176,6 +188,10 @@ class DependenceDomains:
     def __init__(
         self, curve: Curve, gamma: float, alpha: float, y: np.ndarray, time: np.ndarray
     ) -> None:
+        """Find the domain of dependence of each point (y, time) on the front curve t = T(x).
+
+        It ends where the characteristics t - y = xi and t + y = eta of the point meet the curve.
+        """
         self.curve, self.y = curve, y
         self.alpha = alpha
         self.stiffness = gamma - 0.25 * alpha**2
@@ -184,64 +200,76 @@ class DependenceDomains:
 
     def slip_velocity(self) -> np.ndarray:
         """Return du/dt at the points."""
+        # The source is tau dx/ds.
         source = self.curve.source
         return 0.5 * self._integrate(lambda nodes: nodes.kernel(0) * source[nodes.panels].ravel())
 
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        They are derivatives of the formula 2 du/dt = Int tau E K dx. If xi changes, three things
-        change: the left end of the integral by dx/dg, the kernel K by k (eta - h) K', and the decay
-        factor E by -alpha/4 E. The derivative by eta is similar, with the right end.
+        They are the derivatives of the formula 2 du/dt = Int tau E K dx. With xi, three things
+        change: the left end x_l of the integral (where g = xi) by dx/dg, the kernel K by
+        k (eta - h) K', and the decay factor E by -alpha/4 E. With eta, the right end x_r (where
+        h = eta) changes by dx/dh, K by k (xi - g) K', and E by the same amount as with xi.
         """
         decay_left, decay_right = self._decay_at_ends()
-        by_left_end = self._source_at_end("t_minus_x", self.left, decay_left)
-        by_right_end = self._source_at_end("t_plus_x", self.right, decay_right)
-        # E changes by the same amount with xi and with eta.
+        # E tau dx/dg at x_l, and E tau dx/dh at x_r.
+        at_left_end = self._source_by_field("t_minus_x", self.left, decay_left)
+        at_right_end = self._source_by_field("t_plus_x", self.right, decay_right)
         by_decay = 0.25 * self.alpha * self.slip_velocity() if self.alpha else 0.0
         if self.stiffness == 0.0:
-            return -0.5 * by_left_end - by_decay, 0.5 * by_right_end - by_decay
+            # K is 1 everywhere.
+            return -0.5 * at_left_end - by_decay, 0.5 * at_right_end - by_decay
         source, k = self.curve.source, self.stiffness
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
             """Return tau K' (eta - h) dx/ds and tau K' (xi - g) dx/ds."""
-            kernel_slope = nodes.kernel(1) * source[nodes.panels].ravel()
-            return np.stack([kernel_slope * nodes.d_eta, kernel_slope * nodes.d_xi])
+            source_times_slope = nodes.kernel(1) * source[nodes.panels].ravel()
+            return np.stack(
+                [source_times_slope * nodes.eta_minus_h, source_times_slope * nodes.xi_minus_g]
+            )
 
-        kernel_by_xi, kernel_by_eta = self._integrate(integrand, (2,))
-        by_xi = 0.5 * (k * kernel_by_xi - by_left_end) - by_decay
-        by_eta = 0.5 * (k * kernel_by_eta + by_right_end) - by_decay
+        by_kernel_with_xi, by_kernel_with_eta = self._integrate(integrand, component_shape=(2,))
+        by_xi = 0.5 * (k * by_kernel_with_xi - at_left_end) - by_decay
+        by_eta = 0.5 * (k * by_kernel_with_eta + at_right_end) - by_decay
         return by_xi, by_eta
 
-    def _source_at_end(self, name: str, end: Crossing, decayed: np.ndarray | float) -> np.ndarray:
-        """Return E tau dx/dg (name "t_minus_x") or E tau dx/dh ("t_plus_x") at an end.
+    def _source_by_field(
+        self, field: str, end: Crossing, decay_at_end: np.ndarray | float
+    ) -> np.ndarray:
+        """Return E tau dx/dg (field "t_minus_x") or E tau dx/dh (field "t_plus_x") at an end.
 
-        end is the left or right end of each integral, and decayed is the decay factor E there. g is
-        T - x, and h is T + x.
+        g = T - x and h = T + x are fields of the curve. end is the left or right end of each
+        integral, and decay_at_end is the decay factor E there.
         """
-        # The source is tau dx/ds, so that its quotient with dg/ds is tau dx/dg.
-        slope = self.curve.evaluate(name, end.panel, end.s, order=1)
-        # Where this slope is 0, tau is 0 too, and the end contributes nothing.
+        # dg/ds or dh/ds. The source is tau dx/ds, so that its quotient with dg/ds is tau dx/dg.
+        slope = self.curve.evaluate(field, end.panel, end.s, order=1)
+        # Where this slope is 0, tau is 0 too. The huge divisor makes the quotient negligible.
         slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
-        return decayed * self.curve.evaluate("source", end.panel, end.s) / slope
+        return decay_at_end * self.curve.evaluate("source", end.panel, end.s) / slope
 
     def slip(self, static_solution: StaticSolution) -> np.ndarray:
         """Return the slip u at the points (y, t), by the formula
 
         2 u = 2 p(y) - E p(x_l) - E p(x_r)
-              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }.
+              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] },
+
+        where p is the static solution, E the decay factor, and K the kernel.
         """
         k, alpha = self.stiffness, self.alpha
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return the expression in braces, per unit of the parameter s of the curve."""
-            p, slope, d_time, d_g, d_h = static_solution.values_on(nodes.panels)
-            factor_of_kernel = -slope * d_time
-            # alpha/2 p dx, where 2 dx = dh - dg.
-            factor_of_kernel -= 0.25 * alpha * p * (d_h - d_g)
-            factor_of_slope = nodes.d_eta * (k * p * d_g)
-            factor_of_slope -= nodes.d_xi * (k * p * d_h)
-            return nodes.kernel(0) * factor_of_kernel + nodes.kernel(1) * factor_of_slope
+            """Return the braces {...} of the formula for the slip, with d/ds in place of d.
+
+            s is the parameter of the curve.
+            """
+            p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
+            kernel, kernel_slope = nodes.kernel(0), nodes.kernel(1)
+            # Since x = (h - g)/2, alpha/2 p dx is alpha/4 p (dh - dg).
+            factor_of_kernel = -dp_dx * dt_ds - 0.25 * alpha * p * (dh_ds - dg_ds)
+            factor_of_slope = nodes.eta_minus_h * (k * p * dg_ds)
+            factor_of_slope -= nodes.xi_minus_g * (k * p * dh_ds)
+            return kernel * factor_of_kernel + kernel_slope * factor_of_slope
 
         return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
 
@@ -253,34 +281,36 @@ class DependenceDomains:
 
         If y increases at constant t, xi decreases and eta increases at the same rate. So the
         argument z of the kernel K changes by k [(xi - g) - (eta - h)], and the square bracket by
-        dg + dh. The decay factor E does not change.
+        dg + dh. The decay factor E does not change. p is the static solution.
         """
         k, alpha = self.stiffness, self.alpha
-        curve = self.curve
         strain = self._minus_mean_of_ends(static_solution, 1)
         if k == alpha == 0.0:
             return strain
 
         def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return the derivative of the expression in braces, per unit of the parameter s."""
-            p, slope, d_time, d_g, d_h = static_solution.values_on(nodes.panels)
-            kernel_slope = nodes.kernel(1)
-            # K' in the second term changes.
-            bracket = nodes.d_eta * (p * d_g) - nodes.d_xi * (p * d_h)
-            by_kernel_slope = k**2 * nodes.kernel(2) * bracket
-            # K in the first term changes, and so does the bracket in the second one.
-            factor_of_kernel = slope * d_time + 0.25 * alpha * p * (d_h - d_g)
-            by_kernel = kernel_slope * (k * factor_of_kernel)
-            by_bracket = kernel_slope * (k * p * (d_g + d_h))
-            return (nodes.d_eta - nodes.d_xi) * (by_kernel - by_kernel_slope) + by_bracket
+            """Return the derivative by y of the braces {...} in the formula for the slip.
 
-        # The ends of the integral move with y. At the left end xi = g, and at the right end
-        # eta = h, so that K = 1 and K' = -1/4 at both of them.
-        at_left, at_right = self._at_ends(static_solution, 0)
-        d_xi = self.xi - curve.evaluate("t_minus_x", self.right.panel, self.right.s)
-        d_eta = self.eta - curve.evaluate("t_plus_x", self.left.panel, self.left.s)
-        by_motion_of_ends = 0.125 * k * (d_xi * at_right - d_eta * at_left)
-        strain += by_motion_of_ends - 0.25 * alpha * (at_right - at_left)
+            They have d/ds in place of d, where s is the parameter of the curve.
+            """
+            p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
+            kernel_slope, kernel_curvature = nodes.kernel(1), nodes.kernel(2)
+            # In the second term, K' changes.
+            p_times_bracket = nodes.eta_minus_h * (p * dg_ds) - nodes.xi_minus_g * (p * dh_ds)
+            by_kernel_slope = k**2 * kernel_curvature * p_times_bracket
+            # In the first term, K changes. alpha/2 p dx is alpha/4 p (dh - dg).
+            minus_factor_of_kernel = dp_dx * dt_ds + 0.25 * alpha * p * (dh_ds - dg_ds)
+            by_kernel = kernel_slope * (k * minus_factor_of_kernel)
+            # In the second term, the square bracket changes, too.
+            by_bracket = kernel_slope * (k * p * (dg_ds + dh_ds))
+            minus_change_of_z = nodes.eta_minus_h - nodes.xi_minus_g
+            return minus_change_of_z * (by_kernel - by_kernel_slope) + by_bracket
+
+        # The ends of the integral move with y. At both of them K = 1 and K' = -1/4, because z = 0.
+        p_left, p_right = self._decayed_at_ends(static_solution, 0)
+        elapsed_left, elapsed_right = self._elapsed_at_ends()
+        by_motion_of_ends = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
+        strain += by_motion_of_ends - 0.25 * alpha * (p_right - p_left)
         return strain + 0.5 * self._integrate(integrand)
 
     def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
@@ -289,9 +319,9 @@ class DependenceDomains:
         p is the static solution, E the decay factor, and x_l and x_r are the ends of the integral.
         """
         at_points = static_solution.evaluate(*self.curve.locate(self.y), order)
-        return at_points - 0.5 * sum(self._at_ends(static_solution, order))
+        return at_points - 0.5 * sum(self._decayed_at_ends(static_solution, order))
 
-    def _at_ends(
+    def _decayed_at_ends(
         self, static_solution: StaticSolution, order: int
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return E p (order 0) or E dp/dx (order 1) at the left and right end of each integral.
@@ -307,29 +337,36 @@ class DependenceDomains:
         """Return the decay factor E at the left and at the right end of each integral."""
         if not self.alpha:
             return 1.0, 1.0
-        # At the left end xi - g is 0, and at the right end eta - h, so that 2 (t - T) is the other
-        # difference.
-        d_eta = self.eta - self.curve.evaluate("t_plus_x", self.left.panel, self.left.s)
-        d_xi = self.xi - self.curve.evaluate("t_minus_x", self.right.panel, self.right.s)
-        return np.exp(-0.25 * self.alpha * d_eta), np.exp(-0.25 * self.alpha * d_xi)
+        elapsed_left, elapsed_right = self._elapsed_at_ends()
+        return np.exp(-0.5 * self.alpha * elapsed_left), np.exp(-0.5 * self.alpha * elapsed_right)
+
+    def _elapsed_at_ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return t - T at the left and right end of each integral: the time since the front came.
+
+        In general 2 (t - T) = (xi - g) + (eta - h). At the left end xi = g, and at the right end
+        eta = h.
+        """
+        eta_minus_h = self.eta - self.curve.evaluate("t_plus_x", self.left.panel, self.left.s)
+        xi_minus_g = self.xi - self.curve.evaluate("t_minus_x", self.right.panel, self.right.s)
+        return 0.5 * eta_minus_h, 0.5 * xi_minus_g
 
     def _integrate(
-        self, integrand: Callable[[PanelNodes], np.ndarray], components: tuple[int, ...] = ()
+        self, integrand: Callable[[PanelNodes], np.ndarray], component_shape: tuple[int, ...] = ()
     ) -> np.ndarray:
         """Return the integral of a function times the decay factor E over the domain of each point.
 
-        The integrand is the function per unit of the parameter s of the panels. If it has several
-        components, components is a tuple with their number, and the result is
-        [component, point].
+        integrand returns the function at nodes of the curve, as a factor of ds, where s is the
+        parameter of the panels. It returns one function, or, if component_shape is (2,), two
+        functions. The result is [point] or [component, point].
         """
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
-        integrals = np.empty((*components, self.xi.size))
+        integrals = np.empty((*component_shape, self.xi.size))
         # Points whose integrals cover similar panels are computed together.
         order = np.lexsort((self.right.panel, self.left.panel))
         for start in range(0, order.size, POINTS_PER_CHUNK):
             points = order[start : start + POINTS_PER_CHUNK]
-            integrals[..., points] = self._integrate_chunk(points, integrand, components)
+            integrals[..., points] = self._integrate_chunk(points, integrand, component_shape)
         # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
 
@@ -337,62 +374,89 @@ class DependenceDomains:
         self,
         points: np.ndarray,
         integrand: Callable[[PanelNodes], np.ndarray],
-        components: tuple[int, ...],
+        component_shape: tuple[int, ...],
     ) -> np.ndarray:
         """Return the integrals of `_integrate` for some of the points, given by their numbers.
 
-        The integrand is evaluated on all panels that one of the points needs. For each point its
-        own panels are then added up, of which the first and the last one count only in part.
+        The integrand is evaluated at the nodes of all panels that one of the points needs. Then the
+        integral of each point is added up over its own panels.
         """
         curve = self.curve
-        # The last and the first panel in the domain of each point.
-        high = self.right.panel[points]
-        low = np.minimum(self.left.panel[points], high)
-        first, last = int(low.min()), int(high.max()) + 1
-        panels = slice(first, last)
-        # From here on, panels are counted from the first one of this chunk.
-        low, high = low - first, high - first
-        row = np.arange(low.size)
-        d_xi = self.xi[points, None] - curve.t_minus_x[panels].ravel()
-        d_eta = self.eta[points, None] - curve.t_plus_x[panels].ravel()
-        z = self.stiffness * d_xi
-        z *= d_eta
-        # Only the first and the last panel of a point may have nodes outside of its domain.
-        z_at_ends = z.reshape(low.size, -1, NODE_COUNT)[row, np.array([high, low])]
+        last_panel = self.right.panel[points]
+        first_panel = np.minimum(self.left.panel[points], last_panel)
+        start, stop = int(first_panel.min()), int(last_panel.max()) + 1
+        needed_panels = slice(start, stop)
+        # From here on, panels are counted from `start`.
+        first_panel, last_panel = first_panel - start, last_panel - start
+        # Arrays with one row for each point and one column for each node of these panels.
+        xi_minus_g = self.xi[points, None] - curve.t_minus_x[needed_panels].ravel()
+        eta_minus_h = self.eta[points, None] - curve.t_plus_x[needed_panels].ravel()
+        z = self.stiffness * xi_minus_g
+        z *= eta_minus_h
+        # z on the first and last panel of each point.
+        z_by_panel = z.reshape(points.size, -1, NODE_COUNT)
+        z_at_ends = z_by_panel[np.arange(points.size), np.array([last_panel, first_panel])]
         kernel = kernel_function(self.stiffness, z, z_at_ends)
-        values = integrand(PanelNodes(d_xi, d_eta, kernel, panels))
+        values = integrand(PanelNodes(xi_minus_g, eta_minus_h, kernel, needed_panels))
         if self.alpha:
-            values = values * decay(self.alpha, d_xi, d_eta)
-        by_panel = values.reshape(*components, low.size, -1, NODE_COUNT)
-        # First the panels from `low` to the one before `high` are added. Then the part of `high` in
-        # the domain is added, and the part of `low` outside of the domain is subtracted.
-        panel = np.arange(last - first)
-        is_between = (panel >= low[:, None]) & (panel < high[:, None])
-        over_panels = np.add.reduce((by_panel @ WEIGHTS) * is_between, axis=-1)
-        weights = partial_weights(np.concatenate([self.right.s[points], self.left.s[points]]))
-        weights_high, weights_low = weights.reshape(2, -1, NODE_COUNT)
-        in_high = np.add.reduce(by_panel[..., row, high, :] * weights_high, axis=-1)
-        outside_in_low = np.add.reduce(by_panel[..., row, low, :] * weights_low, axis=-1)
-        return over_panels + in_high - outside_in_low
+            values = values * decay(self.alpha, xi_minus_g, eta_minus_h)
+        return _integrate_between(
+            values.reshape(*component_shape, points.size, -1, NODE_COUNT),
+            first_panel=first_panel,
+            first_s=self.left.s[points],
+            last_panel=last_panel,
+            last_s=self.right.s[points],
+        )
 
     def _integrate_without_kernel(
         self, integrand: Callable[[PanelNodes], np.ndarray]
     ) -> np.ndarray:
-        """Return the integrals of `_integrate` if the kernel K is 1.
+        """Return the integrals of `_integrate` if the kernel K and the decay factor E are 1.
 
-        Then the integrand is the same for all points. Each integral is the difference of two, from
-        the left end of the curve to the ends of the domain.
+        Then the integrand is the same for all points. Each integral is the integral from the left
+        end of the curve to the right end of the domain, minus that to the left end of the domain.
         """
-        zero, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
-        nodes = PanelNodes(d_xi=zero, d_eta=zero, kernel=lambda _: 1.0, panels=all_panels)
+        # The integrand does not depend on the first two fields, because K is constant.
+        unused, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
+        nodes = PanelNodes(unused, unused, kernel=lambda order: 1.0, panels=all_panels)
         values = np.broadcast_to(integrand(nodes), (1, self.curve.x.size))
-        by_panel = values.reshape(-1, NODE_COUNT)
-        before_panel = np.concatenate([[0.0], np.cumsum(by_panel @ WEIGHTS)])
-        low, high = np.minimum(self.left.panel, self.right.panel), self.right.panel
-        in_low = np.add.reduce(partial_weights(self.left.s) * by_panel[low], axis=-1)
-        in_high = np.add.reduce(partial_weights(self.right.s) * by_panel[high], axis=-1)
-        integrals = (before_panel[high] + in_high) - (before_panel[low] + in_low)
+        values_by_panel = values.reshape(-1, NODE_COUNT)
+        before_panel = np.concatenate([[0.0], np.cumsum(values_by_panel @ WEIGHTS)])
+
+        def integral_up_to(panel: np.ndarray, s: np.ndarray) -> np.ndarray:
+            """Return the integrals from the left end of the curve to parameters s on panels."""
+            on_panel = np.add.reduce(partial_weights(s) * values_by_panel[panel], axis=-1)
+            return before_panel[panel] + on_panel
+
+        first_panel = np.minimum(self.left.panel, self.right.panel)
+        up_to_right_end = integral_up_to(self.right.panel, self.right.s)
+        integrals = up_to_right_end - integral_up_to(first_panel, self.left.s)
+        # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
+
+
+def _integrate_between(
+    values: np.ndarray,
+    first_panel: np.ndarray,
+    first_s: np.ndarray,
+    last_panel: np.ndarray,
+    last_s: np.ndarray,
+) -> np.ndarray:
+    """Return the integral over s for each point: from first_s on a panel to last_s on another one.
+
+    values : the integrand at the nodes of all panels, [..., point, panel, node]
+    """
+    # The sum over whole panels, from the first panel of a point to the one before its last.
+    point, panel = np.arange(values.shape[-3]), np.arange(values.shape[-2])
+    is_added = (panel >= first_panel[:, None]) & (panel < last_panel[:, None])
+    over_whole_panels = np.add.reduce((values @ WEIGHTS) * is_added, axis=-1)
+    # The part of the last panel up to last_s is added. The part of the first panel up to first_s is
+    # subtracted.
+    weights = partial_weights(np.concatenate([last_s, first_s]))
+    last_weights, first_weights = weights.reshape(2, -1, NODE_COUNT)
+    up_to_last_s = np.add.reduce(values[..., point, last_panel, :] * last_weights, axis=-1)
+    up_to_first_s = np.add.reduce(values[..., point, first_panel, :] * first_weights, axis=-1)
+    return over_whole_panels + up_to_last_s - up_to_first_s
 
 
 def partial_weights(s: np.ndarray) -> np.ndarray:
@@ -408,33 +472,35 @@ def kernel_rate(gamma: float, alpha: float) -> float:
     return max(float(np.sqrt(gamma)), 0.5 * abs(alpha))
 
 
-def decay(alpha: float, d_xi: np.ndarray, d_eta: np.ndarray) -> np.ndarray:
-    """Return the decay factor E = exp(-alpha (t - T)/2), where d_xi + d_eta = 2 (t - T)."""
-    return np.exp(np.minimum(-0.25 * alpha * (d_xi + d_eta), MAX_EXPONENT))
+def decay(alpha: float, xi_minus_g: np.ndarray, eta_minus_h: np.ndarray) -> np.ndarray:
+    """Return the decay factor E = exp(-alpha (t - T)/2), where 2 (t - T) = (xi - g) + (eta - h)."""
+    return np.exp(np.minimum(-0.25 * alpha * (xi_minus_g + eta_minus_h), MAX_EXPONENT))
 
 
 def kernel_function(stiffness: float, z: np.ndarray, z_at_ends: np.ndarray) -> Callable:
-    """Return a function that computes the kernel K (order 0) or a derivative of it at z, by order.
+    """Return a function of the order (0, 1, 2) that gives the kernel K, K' or K'' at z.
 
-    z_at_ends are the values of z at the ends of the domains. For positive stiffness only these may
-    be negative, so that the lowest of them is the lowest z.
+    z_at_ends are the values of z at the first and last nodes of each integral. If the stiffness is
+    not negative, only these can be negative at nodes that count. So they contain the lowest z.
     """
     if stiffness < 0.0:
         return partial(_bessel, z)
-    return partial(riemann_kernel, z, (float(z_at_ends.min()), float(z.max())))
+    return partial(_kernel_between, z, float(z_at_ends.min()), float(z.max()))
 
 
-def riemann_kernel(z: np.ndarray, bounds: tuple[float, float], order: int = 0) -> np.ndarray:
-    """Return J0(sqrt z), or its derivative of order 1 or 2 by z, for z within bounds.
+def _kernel_between(z: np.ndarray, lowest: float, highest: float, order: int) -> np.ndarray:
+    """Return the kernel K(z) = J0(sqrt z), or its derivative of order 1 or 2 by z.
 
-    For negative z it is I0(sqrt(-z)).
+    For negative z it is I0(sqrt(-z)). A z below lowest or above highest belongs to a node that does
+    not count. It is clipped, so that nothing overflows.
     """
-    lower, upper = min(bounds[0], 0.0), max(bounds[1], 0.0)
+    lower, upper = min(lowest, 0.0), max(highest, 0.0)
     if lower == upper == 0.0:
         return np.full(z.shape, KERNEL_AT_ZERO[order])
     if max(-lower, upper) > MAX_POLYNOMIAL_ARGUMENT:
         return _bessel(np.clip(z, lower, upper), order)
-    # Bounds are rounded up to powers of two, so that a few polynomials serve all ranges.
+    # Bounds are rounded up to powers of two, so that a few polynomials serve all ranges. The
+    # variable of the polynomial is -1 at the lower bound and 1 at the upper bound.
     lower, upper = _power_of_two(lower), _power_of_two(upper)
     scaled = z - 0.5 * (lower + upper)
     scaled *= 2.0 / (upper - lower)

@@ -119,20 +119,27 @@ class Rupture(ExplainsRemovedNames):
         self._latest_time = self.duration * (1.0 + EQUALITY_TOLERANCE)
         # The construction goes a little beyond the duration.
         until = self.duration * (1.0 + EXTRA_DURATION)
+        # A stretch has the two fronts of one connected part of the rupture. From the unknown points
+        # on, a front could not be followed. They are given with the reasons.
         self.stretches, self._unknown_points = spread(self.law, until)
         self._parts = [self._make_part(stretch, until) for stretch in self.stretches]
         self._solved_parts = self._parts
         if prestress.symmetric:
-            # A symmetric scene is computed at x >= 0 only.
+            # A symmetric scene is computed at x >= 0 only, so parts on the left are not solved.
             self._solved_parts = [part for part in self._parts if part.curve.edges[-1] > 0.0]
 
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
-        """Return the part of the rupture behind the two fronts of a stretch, up to a time."""
+        """Return the connected part of the rupture behind both fronts of a stretch, up to a time.
+
+        Its marks are all positions where the motion of a front may change suddenly: changes of the
+        pre-stress, points where a slow front became fast again (restarts) or where two fronts met
+        (joins), and the ends of both fronts.
+        """
         curve, law = stretch.curve(), self.law
-        # The marks are all positions where the motion of a front may change suddenly.
+        changes_of_prestress = [*law.marks, *law.narrow_features]
         restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
-        ends = [stretch.ends[side].x for side in (LEFT, RIGHT)]
-        marks = np.unique([0.0, *law.marks, *restarts, *stretch.joins, *ends, *law.narrow_features])
+        ends = [stretch.ends[LEFT].x, stretch.ends[RIGHT].x]
+        marks = np.unique([0.0, *changes_of_prestress, *restarts, *stretch.joins, *ends])
         return SolvedPart(
             curve=curve,
             gamma=self.gamma,
@@ -162,12 +169,12 @@ class Rupture(ExplainsRemovedNames):
         end, reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and end.time <= self._latest_time:
             return FrontEnd(float(end.x), float(min(end.time, self.duration)), reason)
-        # The curve continues a little beyond the duration. The front is searched from the outermost
-        # edge that it has reached at the duration.
-        reached_edges = part.curve.edges[part.curve.edge_times <= self.duration]
-        outermost = reached_edges[-1] if side == RIGHT else reached_edges[0]
-        x = part.curve.front_at(self.duration, outermost, side)
-        return FrontEnd(x, self.duration, "duration")
+        # The curve t = T(x) of the fronts continues a little beyond the duration. On it, the front
+        # is searched beyond the last end of a panel that it has reached at the duration.
+        curve = part.curve
+        reached_panel_ends = curve.edges[curve.edge_times <= self.duration]
+        outermost = reached_panel_ends[-1] if side == RIGHT else reached_panel_ends[0]
+        return FrontEnd(curve.front_at(self.duration, outermost, side), self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
         """Return T(x), the time at which the first front reaches x.
@@ -181,6 +188,7 @@ class Rupture(ExplainsRemovedNames):
         array, NaN where no front arrives before ``duration``
         """
         x = as_numbers("x", x)
+        # NaN outside of a part; fmin ignores NaN.
         times = [part.curve.arrival(x) for part in self._parts]
         return self._nan_where_unknown(x, np.fmin.reduce(times))
 
@@ -224,17 +232,19 @@ class Rupture(ExplainsRemovedNames):
         If the scene is symmetric, positions on the left are mirrored to the right.
         """
         x = np.abs(x) if self.prestress.symmetric else x
-        positions, index = np.unique(x, return_inverse=True)
-        return positions, index.reshape(x.shape)
+        distinct_x, index = np.unique(x, return_inverse=True)
+        return distinct_x, index.reshape(x.shape)
 
     def _stick_time_beyond_end(self, x: np.ndarray) -> np.ndarray:
-        """Return stick times, also those slightly after the duration or beyond the horizon.
+        """Return the stick time at each x, even if it is after the duration or beyond the horizon.
 
-        NaN if a block does not stick.
+        NaN where no stick is found until slightly after the duration.
         """
-        positions, index = self._distinct_positions(x)
-        times = [part.stick_time(positions) for part in self._solved_parts]
-        return np.fmin.reduce(times)[index]
+        distinct_x, index = self._distinct_positions(x)
+        # NaN outside of a part; fmin ignores NaN.
+        times = [part.stick_time(distinct_x) for part in self._solved_parts]
+        stick_times = np.fmin.reduce(times)
+        return stick_times[index]
 
     def final_slip(self, x) -> np.ndarray:
         """Return the slip at x after sticking.
@@ -260,11 +270,13 @@ class Rupture(ExplainsRemovedNames):
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None if nothing sticks before ``duration``."""
         first_of_parts = [part.first_stick() for part in self._solved_parts]
+        # The earliest one. The result is None for a part in which nothing sticks.
         first = min(filter(None, first_of_parts), default=None)
-        # Trailing edges are known up to the earliest limit of the construction. A stick after it
-        # need not be the first one, because another one may have been missed.
-        known_until = self.limit.time * (1.0 + EQUALITY_TOLERANCE) if self.limit else np.inf
-        if not first or first.time > min(known_until, self._latest_time):
+        if first is None or first.time > self._latest_time:
+            return None
+        # After the earliest limit of the construction, parts of the rupture are unknown. Another
+        # position may have stuck there before this one.
+        if self.limit and first.time > self.limit.time * (1.0 + EQUALITY_TOLERANCE):
             return None
         return FirstStick(min(first.time, self.duration), first.x)
 
@@ -274,10 +286,11 @@ class Rupture(ExplainsRemovedNames):
 
         Both are NaN if nothing sticks before ``duration``.
         """
-        if not self.first_stick:
+        stick = self.first_stick
+        if stick is None:
             return ExactTransition(np.nan, np.nan)
-        left, right = self.fronts_at(*self.first_stick)
-        return ExactTransition(self.first_stick.time, right - left)
+        left_front, right_front = self.fronts_at(stick.time, stick.x)
+        return ExactTransition(stick.time, right_front - left_front)
 
     def pulse_width(self, time: float, side: str = "right") -> float:
         """Return the distance between the "right" or "left" front and its trailing edge.
@@ -301,36 +314,36 @@ class Rupture(ExplainsRemovedNames):
         is_unknown = self._is_beyond_horizon(ends, time).any()
         return np.nan if is_unknown else abs(front - trailing_edge)
 
-    def _trailing_edge_behind(self, front: float, time: float, stuck: float) -> float:
-        """Return where the trailing edge that follows a front is at a time.
+    def _trailing_edge_behind(self, front: float, time: float, stuck_position: float) -> float:
+        """Return where the trailing edge (the rear end of the pulse) behind a front is at a time.
 
-        front is the position of the front at this time, and stuck is a position that has stuck
+        front is the position of the front at this time, and stuck_position is one that has stuck
         before. The result is the front itself if the front has stopped and its pulse has ended.
         """
 
-        def delay(position: float) -> float:
-            """Return how much later than the given time a position sticks.
+        def time_until_stick(position: float) -> float:
+            """Return the stick time of a position, minus the time; negative if it has stuck."""
+            stick = float(self._stick_time_beyond_end(np.array(position)))
+            # A position that never sticks counts as if it stuck after the end of the rupture.
+            return (2.0 * self.duration if np.isnan(stick) else stick) - time
 
-            A position that never sticks counts as if it stuck after the end of the rupture.
-            """
-            stick = np.nan_to_num(
-                self._stick_time_beyond_end(np.array(position)), nan=2.0 * self.duration
-            )
-            return float(stick) - time
-
-        if delay(front) <= 0.0:
+        if time_until_stick(front) <= 0.0:
             return front
-        # If there are several trailing edges, that of the pulse is nearest to the front. So the
-        # knots between the two positions are examined from the front on. The edge lies between the
-        # first of them that has stuck and the one before.
+        # There may be several trailing edges. That of the pulse is the nearest one to the front. So
+        # the knots, at which stick times are stored, are examined from the front to stuck_position.
         knots = np.concatenate([part.knots.x for part in self._solved_parts])
-        knots = np.append(knots, -knots) if self.prestress.symmetric else knots
-        is_between = (knots - stuck) * (knots - front) < 0.0
-        candidates = np.append(knots[is_between], stuck)
-        from_front = candidates[np.argsort(np.abs(candidates - front))]
-        first_stuck = int(np.argmax(self._stick_time_beyond_end(from_front) <= time))
-        ahead = from_front[first_stuck - 1] if first_stuck else front
-        return root_between(delay, float(from_front[first_stuck]), float(ahead), xtol=1e-11)
+        if self.prestress.symmetric:
+            knots = np.append(knots, -knots)
+        lower, upper = sorted((front, stuck_position))
+        examined = np.append(knots[(knots > lower) & (knots < upper)], stuck_position)
+        examined = examined[np.argsort(np.abs(examined - front))]
+        has_stuck = self._stick_time_beyond_end(examined) <= time
+        # The edge lies between the first position that has stuck and the one before it.
+        first_stuck = int(np.argmax(has_stuck))
+        still_slides = examined[first_stuck - 1] if first_stuck > 0 else front
+        return root_between(
+            time_until_stick, float(examined[first_stuck]), float(still_slides), xtol=1e-11
+        )
 
     @cached_property
     def largest_velocity(self) -> float:
@@ -404,10 +417,12 @@ class Rupture(ExplainsRemovedNames):
         """Return the named fields at points, whose positions and times are broadcast."""
         x, time = broadcast_numbers(x=x, time=time)
         time = self._limited_to_duration(time)
-        positions, index = self._distinct_positions(x)
+        distinct_x, index = self._distinct_positions(x)
+        # All fields are 0 at points that have not been released.
         values_by_name = {name: np.zeros(x.shape) for name in fields}
         for part in self._solved_parts:
-            part.fill_fields(values_by_name, x=positions, index=index, time=time)
+            # This writes the values at the points that have been released in this part.
+            part.fill_fields(values_by_name, x=distinct_x, index=index, time=time)
         if "strain" in values_by_name and self.prestress.symmetric:
             # The fields were computed at |x|. At x < 0 only the strain has another sign.
             values_by_name["strain"] *= np.where(x < 0.0, -1.0, 1.0)
@@ -431,7 +446,8 @@ class Rupture(ExplainsRemovedNames):
     def _nan_where_unknown(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return times of events at positions x; NaN if an event is not known to happen.
 
-        An event after the duration, or beyond the horizon, is not known to happen.
+        It is not known to happen after the duration, or beyond the horizon, which is the time from
+        which on nothing is known at x.
         """
         is_before_end = time <= self._latest_time
         is_known = is_before_end & ~self._is_beyond_horizon(x, time)
@@ -443,21 +459,22 @@ class Rupture(ExplainsRemovedNames):
 
     @cached_property
     def _limits(self) -> list[Limit]:
-        """All points from which on the construction is not valid, with their reasons."""
+        """All points from which on the construction is not valid, with their reasons.
+
+        There a front could not be followed, the trailing edge becomes slower than the waves, or the
+        slip would decrease.
+        """
         limits = [Limit(point.x, point.time, reason) for point, reason in self._unknown_points]
         for part in self._solved_parts:
-            slow_edges = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
-            # Falling slip beyond the other limits does not count.
-            horizon = partial(_horizon, limits + slow_edges)
-            falling_slips = [
-                Limit(point.x, point.time, FALLING_SLIP) for point in part.falling_slip(horizon)
-            ]
-            limits_of_part = slow_edges + falling_slips
-            if self.prestress.symmetric:
-                limits_of_part += [
-                    Limit(-limit.x, limit.time, limit.reason) for limit in limits_of_part
-                ]
+            limits_of_part = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
+            # Slip is checked only up to the horizon of the limits that have been found so far.
+            horizon = partial(_horizon, limits + limits_of_part)
+            for point in part.falling_slip(horizon):
+                limits_of_part.append(Limit(point.x, point.time, FALLING_SLIP))
             limits += limits_of_part
+            if self.prestress.symmetric:
+                # The solved part is the one at x >= 0. The same holds at x <= 0.
+                limits += [Limit(-limit.x, limit.time, limit.reason) for limit in limits_of_part]
         return [limit for limit in limits if limit.time <= self._latest_time]
 
     @property

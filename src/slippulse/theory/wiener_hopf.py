@@ -112,20 +112,21 @@ def log_prestress(
         gamma_dx2=gamma_dx2,
         alpha_dx=alpha_dx,
     )
-    # ln M_+(0): the two halves of the contour contribute complex conjugate integrals.
+    # ln M_+(0). The left half of the contour contributes the complex conjugate of the right half,
+    # so that the imaginary part counts twice.
     log_tau = (log_values @ (contour.weight / contour.z)).imag / np.pi
     if gamma_dx2 > 0.0:
-        # The integrand has a pole at z = 0, where the two halves of the contour meet at an angle.
-        # So the pole contributes a fraction of its residue, the logarithm of 1 - rho at 0. There
-        # q = sqrt(g)/2 and r = sqrt(1 + g/4).
+        # The integrand has a pole at z = 0, where the two halves of the contour meet. A small arc
+        # below 0 joins them. Its angle is pi - 2 angle, so the pole adds this fraction of 2 pi
+        # times its residue, ln(1 - rho) at q = sqrt(g)/2 and r = sqrt(1 + g/4).
         q_at_0 = 0.5 * np.sqrt(gamma_dx2)
         log_at_0 = np.log(2.0 * q_at_0 / (np.sqrt(1.0 + q_at_0**2) + q_at_0))
         log_tau = (0.5 - angle / np.pi) * log_at_0 + log_tau
     else:
-        # `log_factor` is then relative to b = 1, where M_+(0) = 1 - 1/v.
+        # `log_factor` returned the difference from b = 1, where M_+(0) = 1 - 1/v = (v - 1)/v.
         log_tau += np.log(excess_speed / (1.0 + excess_speed))
     if release == "elastic" and np.any(damping_ratio > 0.0):
-        log_at_iy = _log_factor_at_iy(
+        log_at_iy = _log_m_plus_at_iy(
             contour,
             log_values=log_values,
             excess_speed=excess_speed,
@@ -137,22 +138,25 @@ def log_prestress(
     return log_tau
 
 
-def _log_factor_at_iy(
+def _log_m_plus_at_iy(
     contour: Contour,
     log_values: np.ndarray,
     excess_speed: np.ndarray,
     damping_ratio: np.ndarray,
     gamma_dx2: float,
 ) -> np.ndarray:
-    """Return ln M_+ of each front at k = i y, with y = 1/(b v).
+    """Return ln M_+(i y) of each front, where y = 1/(b v) and b is the damping ratio.
 
-    log_values is the result of `log_factor`; the other arguments are those of `log_prestress`.
+    It is the integral of ln(1 - rho e^{iz})/(z - i y) along the contour, divided by 2 pi i.
+    log_values, the result of `log_factor`, has this logarithm at the nodes of the contour.
+    excess_speed is v - 1.
     """
+    # Without damping the caller does not use the result. The division must only not fail.
     y = 1.0 / np.maximum(damping_ratio * (1.0 + excess_speed), 1e-300)
     z_minus_iy = contour.z - 1j * y[:, None]
     log_at_iy = np.sum(log_values * (contour.weight / z_minus_iy), axis=1).imag / np.pi
     if gamma_dx2 == 0.0:
-        # `log_factor` is then relative to b = 1, where M_+(i y) = 1 - (1 - e^{-y})/(v y).
+        # `log_factor` returned the difference from b = 1, where M_+(i y) = 1 - (1 - e^{-y})/(v y).
         numerator = excess_speed * y + _exp_minus_two_terms(-y).real
         log_at_iy += np.log(numerator / ((1.0 + excess_speed) * y))
     return log_at_iy
@@ -163,16 +167,17 @@ def _choose_contour(
 ) -> tuple[Contour, float]:
     """Return a contour that serves all fronts, and the angle of its ray below the real axis.
 
-    Its panels begin at half of the smallest distance from 0 at which a zero or a branch point of
-    the symbol can lie. From there to CONTOUR_REACH they have equal lengths in ln |z|.
+    The panel next to 0 is at most half as long as the smallest distance |z| from 0 at which a zero
+    or a branch point of the symbol can lie. From there to CONTOUR_REACH, panels have equal lengths
+    in ln |z|. excess_speed is v - 1.
     """
-    # (1 + b) |w| is at least 1 at the branch points of r. With leaf springs the branch points of q
-    # may be nearer to 0, and without leaf springs a zero of the symbol.
-    nearest_to_0 = np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed
-    smallest_w = np.minimum(nearest_to_0, 1.0)
+    # A lower bound of (1 + b) |w| at these points. At the branch points of r it is 1. Nearer to 0
+    # there may be branch points of q, at sqrt(g) or, with drag, g/|a|. Without leaf springs, a zero
+    # of the symbol may be nearer to 0, at v - 1.
+    smallest_w = np.minimum(np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed, 1.0)
     if alpha_dx:
         smallest_w = min(smallest_w, gamma_dx2 / abs(alpha_dx))
-    # On the contour w is v z.
+    # w is v z.
     smallest_z = np.min(smallest_w / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
     panel_count = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
     angle = _contour_angle(excess_speed, gamma_dx2, alpha_dx)
@@ -203,7 +208,7 @@ def log_factor(
     gamma_dx2: float,
     alpha_dx: float,
 ) -> np.ndarray:
-    """Return the logarithm of the factor 1 - rho e^{iz} at the nodes, [front, node].
+    """Return the logarithm of 1 - rho e^{iz}, a factor of the symbol, at the nodes: [front, node].
 
     Without leaf springs it is the difference from the logarithm at the damping ratio b = 1, where
     the factor has a closed form. excess_speed, v - 1, and damping_ratio are columns with one row
@@ -218,14 +223,14 @@ def log_factor(
     rho = (1.0 + damping_ratio * iw) / r_plus_q**2
     factor = 2.0 * q / r_plus_q - rho * contour.exp_minus_1
     # Near z = 0 the two terms cancel as v -> 1. There 1 - e^{i z + ln rho} is computed instead.
-    quotient = q / r
-    is_close = (np.abs(quotient) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT) & (excess_speed < 1.0)
+    is_small = (np.abs(q / r) < SERIES_LIMIT) & (np.abs(z) < SERIES_LIMIT)
+    is_close = is_small & (excess_speed < 1.0)
     if np.any(is_close):
-        # The nodes up to the last one that is close to 0 for some front.
-        last = int(np.flatnonzero(is_close.any(axis=0))[-1]) + 1
-        first_nodes = np.s_[:, :last]
+        # The first nodes are the nearest to 0. Those after the last close one are left out.
+        close_count = int(np.flatnonzero(is_close.any(axis=0))[-1]) + 1
+        first_nodes = np.s_[:, :close_count]
         exponent = _exponent_near_zero(
-            z[:last],
+            z[:close_count],
             iw=iw[first_nodes],
             roots=Roots(q[first_nodes], r[first_nodes]),
             is_close=is_close[first_nodes],
@@ -256,21 +261,22 @@ def _exponent_near_zero(
 ) -> np.ndarray:
     """Return i z + ln rho at nodes z near 0, computed without cancellation, and 0 at other nodes.
 
-    is_close is True at the nodes near 0. With h = q/r, ln rho is -2 artanh h, so that the exponent
-    is (i z - 2 h) - 2 (artanh h - h). The first bracket is i times a small lag. With w = v z and
-    W = sqrt(w^2 - g - i a w), which is -2 i q, this is
+    is_close is True at the nodes near 0. With h = q/r, ln rho is -2 artanh h. So the result is
+    (i z - 2 h) - 2 (artanh h - h). With w = v z and W = sqrt(w^2 - g - i a w) = -2 i q, the first
+    bracket is i times
 
-        lag = (z - w) + (w - W) + W (r - 1)/r.
+        lag = z - W/r = (z - w) + (w - W) + W (r - 1)/r.
     """
     q, r = roots
-    # W and its difference from w.
     w_reduced = -2j * q
+    # r - 1 = (r^2 - 1)/(r + 1), and r^2 = 1 + i b w - W^2/4.
     r_minus_1 = (damping_ratio * iw - 0.25 * w_reduced**2) / (r + 1.0)
     lag = -excess_speed * z + w_reduced * r_minus_1 / r
     if gamma_dx2 > 0.0:
-        w_minus_w_reduced = (gamma_dx2 + alpha_dx * iw) / (-1j * iw + w_reduced)
-        lag = lag + w_minus_w_reduced
+        # w - W = (w^2 - W^2)/(w + W).
+        lag = lag + (gamma_dx2 + alpha_dx * iw) / (-1j * iw + w_reduced)
     h = np.where(is_close, q / r, 0.0)
+    # artanh h - h is computed from its series if h is small.
     square, is_large = h * h, np.abs(h) >= ARTANH_SERIES_LIMIT
     artanh_minus_h = h * square * _ARTANH_SERIES(square)
     artanh_minus_h[is_large] = np.arctanh(h[is_large]) - h[is_large]
@@ -287,23 +293,25 @@ def q_and_r(iw: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_d
 
     4 q^2 and 4 r^2 are quadratic polynomials in i w. Each square root is computed as the product of
     the square roots of two linear factors. Its branch cuts then run straight up from the branch
-    points in the plane of w. For r the factors are
+    points in the plane of w. The factors are
 
-        4 r^2 = (i w)^2 + 4 c i w + 4 + g = (i w + c_1)(i w + c_2),   c = b + a/4.
+        4 r^2 = (i w)^2 + (4 b + a) i w + 4 + g = (i w + c_1)(i w + c_2),
+        4 q^2 = (i w)^2 + a i w + g             = (i w + d_1)(i w + d_2).
     """
-    product_of_c = 4.0 + gamma_dx2
-    mean_of_c = 2.0 * (damping_ratio + 0.25 * alpha_dx)
-    # c_1 and c_2 are 2 c +- sqrt(4 c^2 - 4 - g).
-    discriminant = 4.0 * (damping_ratio + 0.25 * alpha_dx) ** 2 - product_of_c
+    # c_1 and c_2 are m +- sqrt(m^2 - c_1 c_2), where m is their mean.
+    mean = 2.0 * (damping_ratio + 0.25 * alpha_dx)
+    product = 4.0 + gamma_dx2
+    discriminant = mean**2 - product
     are_real = discriminant >= 0.0
     root = np.sqrt(np.abs(discriminant))
-    c_1 = mean_of_c + np.where(are_real, root, 1j * root)
+    c_1 = mean + np.where(are_real, root, 1j * root)
     # If both are real, the smaller one follows from the product without cancellation.
-    c_2 = np.where(are_real, product_of_c / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
+    c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
     r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
     if gamma_dx2 == 0.0:
+        # Then there is no drag, either (a = 0), and 4 q^2 = (i w)^2.
         return Roots(0.5 * iw, r)
-    # Likewise 4 q^2 = (i w)^2 + a i w + g.
+    # d_1 and d_2 are a/2 -+ this root.
     root_of_q = np.sqrt(complex(0.25 * alpha_dx**2 - gamma_dx2))
     q = 0.5 * np.sqrt(iw + 0.5 * alpha_dx - root_of_q) * np.sqrt(iw + 0.5 * alpha_dx + root_of_q)
     return Roots(q, r)

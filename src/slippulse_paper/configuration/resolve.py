@@ -74,15 +74,20 @@ def _linear_law(alpha: float) -> Mapping:
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:
     """Return all simulations by name. Scenes are simulations of one run."""
-    scenes = {name: scene_simulation(scene, config.model) for name, scene in config.scenes.items()}
+    dx = accuracy_of(config)["dx"]
+    scenes = {
+        name: scene_simulation(scene, config.model, dx) for name, scene in config.scenes.items()
+    }
     return {**config.simulations, **scenes}
 
 
-def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
+def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
     """Return a scene as a simulation of one run.
 
     The simulation records all kinds of data. Its samples cover all positions that the fronts may
     reach.
+
+    dx : block spacing of the preset, which is used unless the scene sets its own
     """
     friction_ratio = None
     if scene.layer is not None:
@@ -92,7 +97,7 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     del given["title"]
     # Turn the single values of the scene into the profiles and lists of a simulation.
     profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
-    extent = _extent(scene, model, profile)
+    extent = _extent(scene, _largest_damping_ratio(scene, model, dx), profile)
     given |= {key: [given[key]] for key in LISTED if key in given}
     given["profiles"] = [profile]
     given["duration"] = {"time": scene.duration}
@@ -107,37 +112,38 @@ def scene_simulation(scene: NamedScene, model: Model) -> Simulation:
     return Simulation.model_validate(given)
 
 
-def _largest_front_speeds(scene: NamedScene, model: Model, levels: np.ndarray) -> np.ndarray:
-    """Return an upper bound on the front speed in a scene, at each value of the pre-stress.
+def _largest_damping_ratio(scene: NamedScene, model: Model, dx: float) -> float:
+    """Return an upper bound on the damping ratio beta/dx in a scene."""
+    if scene.beta is not None:
+        # Results at different presets are sampled alike, unless the damping ratio is very large.
+        return max(1.0, scene.beta / (scene.dx or dx))
+    return model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
 
-    If the scene sets beta, the bound holds as long as beta/dx is at most 1.
 
-    levels : values of the pre-stress
-    """
+def _largest_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndarray:
+    """Return an upper bound on the front speed at each value of the pre-stress."""
     # The speed is infinite at 1.
     levels = np.minimum(levels, 1.0 - 1e-6)
     # At a pre-stress of 0 or less, a front is not faster than waves, whose speed is 1.
     is_fast, speeds = levels > 0.0, np.ones(levels.shape)
-    if scene.beta is not None:
-        # This is the speed at beta/dx = 1 with the release rule "total".
-        speeds[is_fast] = 1.0 / (1.0 - levels[is_fast])
-    elif is_fast.any():
-        ratio = model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
-        speeds[is_fast] = front_speed(levels[is_fast], min(ratio, LARGEST_RATIO), "total")
+    if is_fast.any():
+        ratio = min(damping_ratio, LARGEST_RATIO)
+        speeds[is_fast] = front_speed(levels[is_fast], ratio, "total")
     return speeds
 
 
-def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> float:
+def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any]) -> float:
     """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
 
-    ``profile`` has the keys of the scene that describe its pre-stress.
+    damping_ratio : largest damping ratio of the scene
+    profile : the keys of the scene that describe its pre-stress
     """
     # Slip may start at a bump, and four widths away from its centre a bump is negligible.
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
     if scene.left is not None and scene.right is not None:
         step_levels = [level for _, level in scene.steps]
         highest = max(scene.left, scene.right, *step_levels)
-        (speed,) = _largest_front_speeds(scene, model, np.array([highest]))
+        (speed,) = _largest_front_speeds(np.array([highest]), damping_ratio)
         reach = float(speed) * scene.duration
     else:
         (expanded_profile,) = ExpandedProfiles([profile])
@@ -147,7 +153,7 @@ def _extent(scene: NamedScene, model: Model, profile: Mapping[str, Any]) -> floa
         table_levels = [tau for _, tau in table.points]
         highest = max([0.0, *table_levels])
         levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
-        speeds = _largest_front_speeds(scene, model, levels)
+        speeds = _largest_front_speeds(levels, damping_ratio)
         reach = bound_front_reach(
             table,
             table.nucleation_reach,

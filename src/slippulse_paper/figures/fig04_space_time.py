@@ -120,7 +120,7 @@ def draw(table: pd.DataFrame) -> Figure:
         definition = rf"$T_\text{{trans}}$: {transition}"
         side.suptitle(f"{space_time.run_title(roles)}\n{definition}")
     # The legend has an entry for everything that either panel shows.
-    handles = style.labelled(figure.axes)
+    handles = style.legend_handles(figure.axes)
     style.legend_below(figure, handles, len(handles))
     return figure
 

@@ -34,7 +34,7 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.set_title(title)
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     draw_speeds(speed_axes, roles["selection"])
-    handles = style.labelled(planes)
+    handles = style.legend_handles(planes)
     style.legend_below(figure, handles, len(handles))
     return figure
 

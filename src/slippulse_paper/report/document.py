@@ -16,7 +16,7 @@ import matplotlib
 import typst
 from PIL import Image
 
-from slippulse.data.files import configuration, write_text, write_whole
+from slippulse.data.files import configuration_digest, write_text, write_whole
 
 from ..text.markdown import pandoc
 from .html import TEMPLATES, page
@@ -126,6 +126,6 @@ def _pandoc(text: str, manuscript: Path, template: Path, to: str, options: Seque
         f"--csl={TEMPLATES / 'report.csl'}",
         f"--metadata-file={manuscript / 'metadata.yaml'}",
         f"--bibliography={manuscript / 'references.bib'}",
-        f"--variable=configuration:{configuration()}",
+        f"--variable=configuration:{configuration_digest()}",
     ]
     return pandoc(text, "markdown", to, [*common, *options])

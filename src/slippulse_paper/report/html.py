@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from slippulse.data.files import configuration
+from slippulse.data.files import configuration_digest
 
 from ..text.markdown import markup_of as markup_of
 from ..text.numerals import FILTERS
@@ -39,4 +39,4 @@ def page(template: str, **data: object) -> str:
     template : name of a file in the folder `TEMPLATES`
     data : values that the template uses, by name
     """
-    return PAGES.get_template(template).render(data, configuration=configuration()) + "\n"
+    return PAGES.get_template(template).render(data, configuration=configuration_digest()) + "\n"

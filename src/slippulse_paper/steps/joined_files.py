@@ -16,7 +16,7 @@ from slippulse.data.points import Recorded, runs_in
 from slippulse.data.store import load_dataset
 from slippulse.data.sweeps import combine
 from slippulse.data.tables import load_table, save_table
-from slippulse.data.variables import described
+from slippulse.data.variables import with_descriptions
 from slippulse.measurement.table import run_columns
 from slippulse.measurement.uncertainty import studied_columns
 
@@ -42,7 +42,7 @@ def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Data
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         runs.update(zip(numbers, runs_in(chunk), strict=True))
     in_order = [runs[number] for number in sorted(runs)]
-    return described(combine(in_order, record))
+    return with_descriptions(combine(in_order, record))
 
 
 def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:

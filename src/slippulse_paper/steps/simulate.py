@@ -5,8 +5,8 @@ from collections import Counter
 from pkgutil import resolve_name
 
 from slippulse.data.saving import save_dataset
-from slippulse.data.sweeps import labelled
-from slippulse.data.variables import described
+from slippulse.data.sweeps import with_run_labels
+from slippulse.data.variables import with_descriptions
 from slippulse.simulation.sweep import solve_sweep
 
 from ..configuration.expand import expand
@@ -38,10 +38,10 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
         progress=settings.get("progress"),
     )
     # Add the number and the seed of each run's profile, if the profiles are tables of pre-stress.
-    data = labelled(data, profile_labels(sweep), sweep["record"])
+    data = with_run_labels(data, profile_labels(sweep), sweep["record"])
     flags = [flag for flag in data["run_flags"].values if flag]
     for flag, count in sorted(Counter(flags).items()):
         flagged = f"{count} of {len(scenes)} runs have the flag {flag} (in run_flags)"
         sys.stderr.write(f"  {settings['simulation']}: {flagged}\n")
     # Add units and descriptions of the variables.
-    save_dataset(described(data), outputs["data"])
+    save_dataset(with_descriptions(data), outputs["data"])

@@ -5,7 +5,7 @@ from pkgutil import resolve_name
 
 import pandas as pd
 
-from slippulse.data.sweeps import labelled
+from slippulse.data.sweeps import with_run_labels
 from slippulse.data.tables import load_table, save_table
 from slippulse.measurement.promise import judge_promises, summarise_promises
 from slippulse.measurement.table import LABELS, PARAMETERS, run_columns
@@ -51,7 +51,7 @@ def _run_and_measure(sweep: dict, settings: dict) -> pd.DataFrame:
     scenes, samples = expand(sweep)
     data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
     # Add the number and the seed of each run's profile, if the profiles are tables of pre-stress.
-    data = labelled(data, profile_labels(sweep), sweep["record"])
+    data = with_run_labels(data, profile_labels(sweep), sweep["record"])
     return measured_table(data, settings["measure"])
 
 
