@@ -211,7 +211,7 @@ def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> N
         return
     given_samples = [item for item in samples if item is not None]
     if len(given_samples) < len(samples):
-        allowed = "Samples for each scene, the second argument"
+        allowed = "Samples for each scene, as the second argument"
         raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
     shapes = {(item.times.shape, item.positions.shape) for item in given_samples}
     allowed = "equal numbers of times and positions for all scenes"

@@ -81,7 +81,7 @@ class LayerScene:
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
         allowed = f"a number <= {MAX_DAMPING_RATIO} divided by the number of cells"
         check_that(self.beta * self.cells <= MAX_DAMPING_RATIO, "beta", self.beta, allowed)
-        allowed = "a symmetric scene, if the trail is finite"
+        allowed = "inf, unless the scene is symmetric"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
         check_choice("top", self.top, ("held", "free"))
         check_choice("precision", self.precision, tuple(PRECISIONS))
