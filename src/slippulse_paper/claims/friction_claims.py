@@ -96,11 +96,12 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     steady_count_by_spacing = (~with_strengthening).sum()
     steady_count = float(steady_count_by_spacing.max())
+    words = "number of rate strengthenings under which a pulse stays steady"
     # The caveat is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),
         condition=True,
-        further={"laws, by their strengthening, that leave a steady pulse": steady_count},
+        further={words: steady_count},
     )
 
 

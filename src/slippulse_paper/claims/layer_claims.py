@@ -158,12 +158,16 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(crossings.median()), uncertainty),
         further={
-            "crossing times, top free to rise: least": float(crossings.min()),
-            "crossing times, top free to rise: most": float(crossings.max()),
-            "crossing times of the same pulses, top held: least": float(held_crossings.min()),
-            "crossing times of the same pulses, top held: most": float(held_crossings.max()),
-            "sliding time, top free to rise, divided by top held: least": float(longer.min()),
-            "sliding time, top free to rise, divided by top held: most": float(longer.max()),
+            "sliding time in crossing times, top free to rise: smallest": float(crossings.min()),
+            "sliding time in crossing times, top free to rise: largest": float(crossings.max()),
+            "sliding time in crossing times, top held: smallest": float(held_crossings.min()),
+            "sliding time in crossing times, top held: largest": float(held_crossings.max()),
+            "sliding time with free top divided by that with held top: smallest": float(
+                longer.min()
+            ),
+            "sliding time with free top divided by that with held top: largest": float(
+                longer.max()
+            ),
         },
     )
 
@@ -366,10 +370,10 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         # The paper makes no claim about two dimensions.
         failing=rules.BEYOND,
         further={
-            "median in the plane, divided by the formula: speed": float(speed_ratio.median()),
-            "median in the plane, divided by the formula: pulse slip": float(slip_ratio.median()),
-            "narrowest in the plane, divided by the formula": float(ratio.min()),
-            "widest in the plane": float(ratio.max()),
+            "front speed divided by the formula: median": float(speed_ratio.median()),
+            "pulse slip divided by the formula: median": float(slip_ratio.median()),
+            "pulse width divided by the formula: smallest": float(ratio.min()),
+            "pulse width divided by the formula: largest": float(ratio.max()),
         },
         template_values={
             "least": float(energies.min()),

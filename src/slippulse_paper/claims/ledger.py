@@ -57,7 +57,7 @@ class Entry(SimpleNamespace):
         if self.exact_largest is not None:
             median, largest = percent(self.exact_median), percent(self.exact_largest)
             parts.append(
-                f"runs deviate from exact theory by {median} (median), or {largest} at most"
+                f"runs deviate from exact theory by {median} (median) and by at most {largest}"
             )
         parts += [*self._other_tolerances(), *self._not_counted()]
         return "; ".join(part for part in parts if part)
@@ -91,7 +91,7 @@ class Entry(SimpleNamespace):
             names = ", ".join(f"`{id}`" for id in self.follows_from)
             reasons.append(f"the claim follows from {names} and is not counted again")
         if self.beyond:
-            reasons.append("the claim is beyond the paper and is not counted")
+            reasons.append("the claim goes beyond the paper and is not counted")
         if self.remark:
             reasons.append("the claim is a remark on a drawing and is not counted")
         return reasons
@@ -276,8 +276,10 @@ class Ledger:
         text = f"{self.count()} counted claims: {', '.join(listed)}"
         failed = sum(not claim.counted and claim.verdict == FAILED for claim in self)
         if failed:
-            words = "claim, not counted, is" if failed == 1 else "claims, not counted, are"
-            text += f"; {failed} more {words} not reproduced"
+            words = (
+                "claim that is not counted is" if failed == 1 else "claims that are not counted are"
+            )
+            text += f"; {failed} further {words} not reproduced"
         return f"{text}."
 
     def differences(self, shipped: Mapping[str, str]) -> list[dict]:

@@ -139,8 +139,10 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     is_thin = 1.0 / width <= allowed
     further = {
         "narrowest pulse, in H": width.min(),
-        "widest pulse": width.max(),
-        "slowest front, over the fastest wave": table["front_speed_right"].min(),
+        "widest pulse, in H": width.max(),
+        "slowest front speed divided by the speed of the fastest wave": table[
+            "front_speed_right"
+        ].min(),
     }
     template_values = {
         "gamma": sorted({*table["gamma"]}),
@@ -227,9 +229,11 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
             finest["pulse_slip"] <= tolerance, middle["pulse_slip"] <= tolerance
         ),
         further={
-            "slip off by at most": float(largest["pulse_slip"]),
-            "slip off the exact slip by at most": float(largest["exact_pulse_slip"]),
-            "slip off that without damping by at most": float(largest["paper_pulse_slip"]),
+            "largest deviation of the slip": float(largest["pulse_slip"]),
+            "largest deviation of the slip from the exact one": float(largest["exact_pulse_slip"]),
+            "largest deviation of the slip from the formula without damping": float(
+                largest["paper_pulse_slip"]
+            ),
         },
     )
 
@@ -307,9 +311,9 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
     for run, deviations_of_run in enumerate(deviations.to_numpy()):
         decided.append(all_within(deviations_of_run, uncertainties[run], allowed))
     largest = deviations.max()
-    words = "on the lattice, with damping, off by at most"
+    words = "largest deviation on damped lattices"
     further = {
-        f"peak {words}": float(largest["pulse_peak_velocity"]),
-        f"half-width {words}": float(largest[HALF_WIDTH]),
+        f"{words}, peak": float(largest["pulse_peak_velocity"]),
+        f"{words}, half-width": float(largest[HALF_WIDTH]),
     }
     return Qualitative(decided=decided, further=further)

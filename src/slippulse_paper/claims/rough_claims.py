@@ -62,8 +62,8 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
         "least_deviation": roughness[~is_smooth].min(),
     }
     further = {
-        "pulses that die at larger deviations": float(dead_in_rough),
-        "of": float(all_in_rough),
+        "pulses that die at larger standard deviations": float(dead_in_rough),
+        "all pulses at larger standard deviations": float(all_in_rough),
     }
     return Qualitative(
         decided=[True] * int(alive) + [False] * int(dead),
@@ -85,10 +85,10 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
     # The ensemble with the smoothest pre-stress is shown with the claim.
     smoothest = rows.loc[rows["deviation"].idxmin()]
     further = {
-        "smallest deviation": smoothest["deviation"],
-        "spread of its velocities": float(velocity_spread[smoothest.name]),
-        "its cracks": smoothest["cracks"],
-        "its deaths": smoothest["deaths"],
+        "smallest standard deviation": smoothest["deviation"],
+        "spread of the velocities at this deviation": float(velocity_spread[smoothest.name]),
+        "cracks at this deviation": smoothest["cracks"],
+        "deaths at this deviation": smoothest["deaths"],
     }
     return Qualitative(decided=[*changed], further=further)
 

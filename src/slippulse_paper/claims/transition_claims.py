@@ -224,7 +224,8 @@ def described_median_ratios(combinations: Sequence[Combination]) -> dict[str, fl
     """Return `median_ratio_by_fraction` with words for the table of claims as keys, sorted."""
     by_words = {}
     for fraction, median in median_ratio_by_fraction(combinations).items():
-        by_words[f"median ratio: at {text_of_value(fraction)}"] = median
+        end = fraction if isinstance(fraction, str) else f"{text_of_value(fraction)} of the path"
+        by_words[f"median ratio, end at {end}"] = median
     return dict(sorted(by_words.items()))
 
 
@@ -279,7 +280,7 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
     estimate = float(scene[f"paper_transition_{quantity}"])
     return {
         "arrow of figure 4 divided by the estimate": reading["value"] / estimate,
-        "its reading error": reading["reading_error"] / estimate,
+        "reading error of this ratio": reading["reading_error"] / estimate,
     }
 
 
@@ -298,8 +299,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     is_within_tolerance = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {
         f"runs that reach the {PRINTED_SLIP}": float(ratio.count()),
-        "in all": float(len(ratio)),
-        "of these within the tolerance": float(is_within_tolerance.sum()),
+        "all runs": float(len(ratio)),
+        "runs that reach it within the tolerance": float(is_within_tolerance.sum()),
     }
     # Values for the sentences of the claim.
     template_values = readings_by_name(evidence) | deviations_at_first_stick(combinations)
@@ -422,7 +423,7 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
         if choice["solution"] == "exact":
             ratio = tables[0]["time"] / tables[0]["covered"]
             smallest_ratios.append(float(ratio.min()))
-    further = {"smallest ratio of the exact solution": min(smallest_ratios)}
+    further = {"smallest exact time divided by the time at speed 1": min(smallest_ratios)}
     return over_choices(judge_each(runs, judge), further=further)
 
 

@@ -134,7 +134,7 @@ ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop
 SEEDS = "a whole number >= 0, a list of different ones, or {from: A, to: B} with A < B"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
-FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
+FACTORS = "two factors >= 1.2, one at least 1.1 times the other"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
@@ -430,8 +430,8 @@ class Simulation(PhysicsOfSweep):
         "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
     beyond: Beyond | None = key(
-        "second level of the pre-stress, which replaces the first one on one side from"
-        " a position on",
+        "second level of the pre-stress, which replaces the first one on one side"
+        " beyond a position",
         None,
     )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
@@ -579,7 +579,9 @@ class NamedScene(Profile, PhysicsOfScene):
         top = self.layer.top
         agree = top is None or BOUNDARY_OF_TOP[top] == self.boundary
         require(
-            agree, f"boundary: {self.boundary!r}", f"none, or the boundary of layer.top = {top!r}"
+            agree,
+            f"boundary: {self.boundary!r}",
+            f"the one that layer.top = {top!r} implies, or none",
         )
         require(self.gamma is None, f"gamma: {self.gamma}", "none, since it follows from the layer")
         scene = self.in_model_units()
@@ -865,7 +867,11 @@ class Configuration(Block):
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
         problem = f"scenes.{name}: its file has the name of another file"
-        require(not is_taken, problem, "neither index nor SCENE_numbers with another scene SCENE")
+        require(
+            not is_taken,
+            problem,
+            "any name except index, and SCENE_numbers for another scene SCENE",
+        )
 
     def _check_reading(self, key: str, reading: Reading) -> None:
         """Raise ValueError if the number that a reading is compared with is not measured.

@@ -187,7 +187,7 @@ def logged(path: str | Path) -> Iterator[TextIO]:
 def _reason(error: Exception) -> str:
     """Return in one line why a step has failed."""
     if isinstance(error, OSError) and error.errno in DISK_FULL_ERRORS:
-        remedy = "the unfinished file is removed; make room and run again"
+        remedy = "the unfinished file was removed; free some space and run again"
         return f"{os.strerror(error.errno)}: {remedy}"
     # Messages of HDF5 have several lines.
     return f"{type(error).__name__}: {' '.join(str(error).split())}"

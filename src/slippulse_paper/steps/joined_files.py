@@ -22,7 +22,7 @@ from slippulse.measurement.uncertainty import studied_columns
 
 from ..configuration.chunks import runs_of
 
-NOT_ONE_SWEEP = "this chunk and the others do not have the runs of one sweep"
+NOT_ONE_SWEEP = "the chunks do not contain the runs of one sweep"
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
