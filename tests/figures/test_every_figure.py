@@ -248,6 +248,19 @@ def test_every_run_is_drawn_in_the_colour_of_its_damping_ratio_which_lengthens_t
     assert medians[1.0] > 2.0 * medians[0.0]
 
 
+@pytest.mark.parametrize("column", ["gamma", "damping_ratio"])
+def test_one_value_of_a_parameter_is_enough_to_draw_the_influence_of_damping(draw, column):
+    drawn = draw("fig10_damping_displacement")
+    values = drawn.table[column]
+    drawn.module.draw(drawn.table[values == values.min()]).draw_without_rendering()
+
+
+def test_ensembles_in_which_no_pulse_dies_are_drawn(draw):
+    drawn = draw("study_rough_prestress")
+    without_deaths = drawn.table.assign(deaths=drawn.table["deaths"] * 0.0)
+    drawn.module.draw(without_deaths).draw_without_rendering()
+
+
 @pytest.mark.parametrize("name", ["fig05_scaling", "fig10_damping_displacement"])
 def test_a_collapse_without_any_transition_says_so(draw, name):
     drawn = draw(name)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import matplotlib
 import numpy as np
+import pandas as pd
 import pytest
 import tolerances as tol
 from matplotlib.collections import QuadMesh
@@ -169,6 +170,15 @@ def test_each_side_with_a_pulse_has_the_line_of_its_own_steady_pulse(drawn, name
             assert line.get_xdata()[0] == 0.0 and abs(end) > 5.0
             far = (np.sign(x) == np.sign(end)) & (np.abs(x) > 5.0)
             assert value[far].max() == pytest.approx(line.get_ydata()[0], rel=0.05)
+
+
+def test_a_left_pulse_that_has_stopped_has_no_line():
+    barrier = sp.Prestress(0.5, 0.5, bumps=((-12.0, -3.0, 1.0),))
+    run = sp.simulate(sp.Scene("displacement", barrier, 15.0, dx=0.1, gamma=0.65, beta=0.01))
+    columns = figure.LARGEST_VALUE_COLUMNS.values()
+    theory = {f"{prefix}{name}": 1.0 for prefix in ("exact_", "exact_left_") for name in columns}
+    rows = figure.steady_rows(run, pd.Series(theory | {"pulse_state": "steady"}))
+    assert len(rows) == 2 and (rows["position"] > 0.0).all()
 
 
 @pytest.mark.parametrize("name", ["displacement", "barrier"])

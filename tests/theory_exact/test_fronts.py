@@ -62,6 +62,33 @@ def test_a_slow_front_without_leaf_springs_is_the_closed_form():
 
 
 @pytest.mark.parametrize(
+    "profile",
+    [
+        sp.Prestress(-0.5, 0.3, 0.2, steps=((15.0, 0.0),)),
+        sp.Prestress(-0.5, 0.0, 0.2, bumps=((20.0, 0.3, 2.0),)),
+    ],
+)
+def test_an_arresting_crack_includes_steps_and_bumps_far_from_the_nucleation(profile):
+    """They lie beyond the end of the Gaussian at x = 0."""
+    crack, rupture = ArrestingCrack(profile), Rupture(profile, 0.0, duration=60.0)
+    for fraction in (0.5, 0.8):
+        transition = crack.transition(fraction)
+        left, right = rupture.fronts_at(transition.time)
+        assert left == pytest.approx(fraction * crack.balance_position, rel=1e-8)
+        assert transition.length == pytest.approx(right - left, rel=1e-8)
+    _, velocity = crack.far_pulse()
+    assert velocity[0] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_transition_includes_steps_far_from_the_nucleation():
+    """Up to the steps the fronts run three times as fast as beyond them."""
+    profile = sp.Prestress(0.95, 0.95, 0.05, steps=((-100.0, 0.1), (100.0, 0.1)))
+    exact = sp.theory.exact_transition_displacement(profile, 0.01)
+    transition = Rupture(profile, 0.01, duration=80.0).transition
+    assert tuple(exact) == pytest.approx(tuple(transition), rel=1e-8)
+
+
+@pytest.mark.parametrize(
     ("edge", "ratio", "refinements"),
     [(8.0, 0.0, (1, 3)), (12.0, 0.0, (1, 3, 10)), (20.0, 0.1, (1, 3)), (50.0, 0.0, (1, 3))],
 )
@@ -126,3 +153,15 @@ def test_the_depth_scales_with_the_leaf_springs_and_falls_with_the_level():
     depths = [barrier_depth(0.4, level, 0.65, 0.1) for level in (-0.1, -0.3, -1.0, -3.0)]
     assert np.all(np.diff(depths) < 0.0)
     assert sp.theory.barrier_depth_estimate(0.5, -0.5, 0.65) == pytest.approx(2.1328, abs=1e-4)
+
+
+def test_a_front_that_was_not_followed_is_unknown_afterwards():
+    points = ((-9.34, 0.187), (-2.75, -0.0097), (-1.504, -0.711), (6.42, -0.368), (7.57, -0.46))
+    prestress = sp.Prestress(0.187, -0.46, 0.9, points=points)
+    rupture = Rupture(prestress, 0.65, 0.1, "total", 20.0)
+    ((left_end, _),) = rupture.front_ends
+    assert left_end.reason == "unresolved"
+    known = rupture.fronts_at(0.99 * left_end.time)
+    assert left_end.x < known[0] < 0.0 < known[1]
+    left, right = rupture.fronts_at(20.0)
+    assert np.isnan(left) and right > 0.0

@@ -121,6 +121,12 @@ def test_wrong_lists_are_refused(refusal, values):
         sp.sweep(boundary="stress", left=0.5, dx=0.1)
 
 
+def test_an_array_can_be_a_list_or_a_single_value():
+    runs = sp.sweep(**VALUES | {"gamma": np.array(0.3), "left": np.array([0.4, 0.5])})
+    assert runs["left"].values.tolist() == [0.4, 0.5]
+    assert (runs["gamma"] == 0.3).all()
+
+
 def test_profiles_of_pre_stress_can_be_listed():
     profiles = [sp.Prestress(0.5, 0.5), sp.Prestress(0.5, 0.5, width=2.0)]
     runs = sp.sweep(boundary="stress", prestress=profiles, dx=[0.1, 0.2], duration=1.0)

@@ -70,6 +70,7 @@ FLAGS = {
     "a Gaussian of few blocks under stress": (stress(-0.5, 0.0, 4.0, 0.2), "unresolved_pulse"),
     "a Gaussian of many blocks under stress": (stress(-0.5, 0.0, 4.0, 0.125), ""),
     "a steep Gaussian of few blocks": (steep(0.1), "unresolved_pulse"),
+    "a steep Gaussian narrower than a block": (steep(0.2), "unresolved_pulse"),
     "a steep Gaussian of many blocks": (steep(0.005), ""),
     "a lattice too coarse for a steady pulse": (arrest(0.01, dx=0.1), "died_out"),
     "too coarse for one of two pulses": (arrest(0.01, dx=0.1, right=0.5), "died_out"),

@@ -329,8 +329,9 @@ class Scene:
                 values[name] = value.item() if hasattr(value, "item") else value
             values["friction"] = friction_from(read_recorded_law(values))
             values["prestress"] = prestress_from(values)
-            check_number("half_lattice", values["half_lattice"], True, at_least=0, at_most=1)
-            values["half_lattice"] = bool(values["half_lattice"])
+            half_lattice = values["half_lattice"]
+            check_number("half_lattice", half_lattice, integer=True, at_least=0, at_most=1)
+            values["half_lattice"] = bool(half_lattice)
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
             allowed = "every attribute of a run"

@@ -111,7 +111,9 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
         order, stiffness=s + gamma_dx2, damping=damping_ratio * s + drag
     )
     max_amplification = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
-    # The shortest step that is tried. If it is unstable, the bound lies between 0 and this step.
+    # The shortest step that is tried. It is not longer than the times in which the fastest mode
+    # changes, 1/damping_ratio, 1/drag and 1/sqrt(gamma_dx2). If even this step is unstable, the
+    # bound lies between 0 and this step.
     shortest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if shortest == 0.0:
         return 0.0
@@ -122,11 +124,9 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
         # rounding may make the last one look stable.
         largest_of_modes = np.max(_amplifications(steps[1:-1], derivatives), axis=1)
         # Written with ~ so that an amplification of NaN counts as unstable.
-        is_unstable = np.append(~(largest_of_modes <= max_amplification), True)
-        # This mask begins with the second step. The index of its first unstable step is therefore
-        # that of the step before, the last stable one.
-        last_stable = int(np.argmax(is_unstable))
-        steps = np.linspace(steps[last_stable], steps[last_stable + 1], PARTS_PER_ROUND + 1)
+        is_unstable = [False, *~(largest_of_modes <= max_amplification), True]
+        first_unstable = is_unstable.index(True)
+        steps = np.linspace(steps[first_unstable - 1], steps[first_unstable], PARTS_PER_ROUND + 1)
     return float(steps[0])
 
 

@@ -219,12 +219,13 @@ def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
         raise StressFileError(f"{count} of numbers; allowed: at least 2, from left to right")
     for index in range(1, len(rows)):
         position, before = x[index], x[index - 1]
+        wrong_row = f"row {rows[index]}: position {position:.10g}"
         if position < before:
             allowed = f">= {before:.10g}, the position in the row before"
-            raise StressFileError(f"row {rows[index]}: {position:.10g}; allowed: {allowed}")
+            raise StressFileError(f"{wrong_row}; allowed: {allowed}")
         if index > 1 and position == before == x[index - 2]:
             allowed = "at most 2 rows with the same position; the pre-stress jumps between them"
-            raise StressFileError(f"row {rows[index]}: {position:.10g}; allowed: {allowed}")
+            raise StressFileError(f"{wrong_row}; allowed: {allowed}")
 
 
 def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> StressTable:
@@ -246,8 +247,8 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
     tau_name = header[_find_column(header, "prestress", prestress, STRESS_NAMES)]
     positions, values = _netcdf_numbers(data, x_name), _netcdf_numbers(data, tau_name)
     if len(positions) != len(values):
-        allowed = "equally many"
-        raise StressFileError(f"{len(positions)} and {len(values)} values; allowed: {allowed}")
+        sizes = f"{len(positions)} values of {x_name}, {len(values)} of {tau_name}"
+        raise StressFileError(f"{sizes}; allowed: as many of one as of the other")
     _check_rows(range(1, len(values) + 1), positions)
     units = [str(data[name].attrs.get("units", "")) for name in (x_name, tau_name)]
     return StressTable(positions, values, units[0], units[1])

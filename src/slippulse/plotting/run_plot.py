@@ -74,6 +74,7 @@ def plot(run: xr.Dataset) -> Picture:
 
 def _check_drawable(run: object) -> None:
     """Raise TypeError if the argument is not one run that has all drawn variables."""
+    # Only sweeps have these dimensions.
     if isinstance(run, xr.Dataset) and {"point", "block"} & {*run.dims}:
         problem, allowed = "a sweep", "one run of it, such as point(sweep, 0)"
     elif not isinstance(run, xr.Dataset) or "end_time" not in run.attrs:

@@ -42,8 +42,9 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     table = pd.concat([table, pd.DataFrame(strengths)], ignore_index=True)
     table = table if "unit" in table else table.assign(unit="")
     axis_units = _convert_coordinates(table, layer)
-    # The quantity in the column `value` of each row. The role determines it, or else the column
-    # `series`. It is NaN for a dimensionless number.
+    # The physical quantity, such as "stress", of the number in the column `value` of each row. It
+    # follows from the role or, for other roles, from the column `series`. It is NaN for a
+    # dimensionless number.
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
     # All values of one quantity on the axes get the same unit.
     is_on_axis = table["role"].isin(AXIS_ROLES)

@@ -36,9 +36,10 @@ PARAMETERS = ("left", "right", "width", "gamma", "damping_ratio", "dx")
 
 
 def run_table(run: xr.Dataset) -> pd.DataFrame:
-    """Return the table that `draw_profile` and `draw_map` need.
+    """Return the table that `draw_profile`, `draw_map` and `run_title` need.
 
-    It also has rows with the parameters, the law of friction and the flags of the run.
+    For the title, it has rows with the parameters of the run (role parameter), and with its table
+    of pre-stress, its law of friction and its flags (roles table, friction and flag), if any.
     """
     rows = [{"role": "parameter", "series": name, "value": run.attrs[name]} for name in PARAMETERS]
     points = prestress_from(run.attrs).points

@@ -286,6 +286,7 @@ def save_figure(figure: Figure, png: str | Path, pdf: str | Path, note: str = ""
     figure.set_layout_engine(None)
     source = f"configuration {configuration_digest()}" if configuration_digest() else None
     metadata = {"CreationDate": None, "Creator": None, "Producer": None, "Keywords": source}
+    # A file gets its name only when it is complete.
     write_whole(png, lambda path: _save_png(canvas, path, source))
     write_whole(pdf, lambda path: figure.savefig(path, format="pdf", metadata=metadata))
 
@@ -316,6 +317,7 @@ def _save_png(canvas: FigureCanvasAgg, path: Path, source: str | None) -> None:
     pixels = np.asarray(canvas.buffer_rgba())
     # Most pixels are white. Without them, the 255 other colours are found in half of the time.
     is_coloured = pixels.view(np.uint32)[..., 0] != WHITE_PIXEL
+    # All coloured pixels stand in one row.
     coloured = Image.fromarray(pixels[np.newaxis, is_coloured]).convert("RGB")
     reduced = coloured.quantize(255, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
     colour_numbers = np.full(is_coloured.shape, 255, dtype=np.uint8)

@@ -167,7 +167,10 @@ def settings_for(
 
 
 def _levels(prestress: Prestress) -> list[float]:
-    """Return the levels of a pre-stress on both sides and beyond steps, and some of a table."""
+    """Return the levels of a pre-stress on both sides and beyond its steps.
+
+    The levels of a table are some of its values, from the lowest to the highest.
+    """
     levels = [prestress.left, prestress.right, *(level for _, level in prestress.steps)]
     if prestress.points:
         levels += _levels_of_table(prestress)

@@ -158,11 +158,12 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
 def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
     """Return the number of blocks across the narrowest pulse at the end.
 
-    Under a stress boundary, return the number of blocks across the nucleation. The number is 0
-    if there is no pulse, or if the exact solution does not know the whole state at the end.
+    Under a stress boundary, return the number of blocks across the nucleation, at least 1. The
+    number is 0 if there is no pulse, or if the exact solution does not know the whole state at the
+    end.
     """
     if scene.boundary == "stress":
-        return int(_nucleation_width(scene, solution) / scene.dx)
+        return max(int(_nucleation_width(scene, solution) / scene.dx), 1)
     if np.isnan(solution.slip_velocity).any():
         return 0
     is_sliding = np.isfinite(solution.release_time) & ~np.isfinite(solution.stick_time)

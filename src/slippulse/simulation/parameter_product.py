@@ -90,8 +90,8 @@ def _values(name: str, value: Any) -> list:
     is_sequence = isinstance(value, list | tuple | range | np.ndarray)
     if not is_sequence or name in SINGLE_PROFILE_NAMES:
         return [value]
-    # Elements of an array are converted to Python numbers.
-    values = value.tolist() if isinstance(value, np.ndarray) else list(value)
+    # Elements of an array are converted to Python numbers. An array may be a single number.
+    values = np.atleast_1d(value).tolist() if isinstance(value, np.ndarray) else list(value)
     check_that(len(values) > 0, name, value, "a value, or a list of at least one")
     return values
 
@@ -102,10 +102,9 @@ def _scenes(lists: dict[str, list]) -> Iterator[Scene]:
     lists : the values of each parameter by its name
     """
     profile_names = [name for name in lists if name in PROFILE_NAMES]
-    has_both = "prestress" in lists and bool(profile_names)
-    check_that(
-        not has_both, "prestress", profile_names, "prestress, or left, right, width and peak"
-    )
+    if "prestress" in lists and profile_names:
+        allowed = "prestress, or left, right, width and peak, but not both"
+        raise ValueError(f"prestress: given with {', '.join(profile_names)}; allowed: {allowed}")
     for combination in product(*lists.values()):
         values = dict(zip(lists, combination, strict=True))
         if profile_names:

@@ -37,6 +37,7 @@ def solve_sweep(
 
     samples, record, threads, progress : as in `run_sweep`
     """
+    # The solved scenes, by their position in ``scenes``.
     runs: dict[int, Recorded] = {}
     order = sorted(range(len(scenes)), key=lambda i: -scenes[i].duration / scenes[i].dx)
     is_stopped = Event()

@@ -10,6 +10,11 @@ are found by Newton's method.
 All times are counted from the start of the step: ``now`` is the time from which on events are
 searched for, and ``step_end`` is the end of the step. ``top`` is the order of the highest time
 derivative of slip that the step has computed.
+
+Arguments such as ``medium``, ``motion`` and ``prediction`` are groups of numbers and arrays, which
+`arrays` defines. Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its
+columns are blocks. Segment r of sliding blocks begins with the block ``edges[2 r]`` and ends before
+the block ``edges[2 r + 1]``.
 """
 
 import math
@@ -210,7 +215,7 @@ def interacts_with_mirror_image(medium, block):
 
 @inlined_kernel
 def has_simultaneous_event(segments, prediction, medium, block, latest):
-    """Return True if another event until the time ``latest`` interacts with one of this block.
+    """Return True if another event until the time ``latest`` interacts with the event of a block.
 
     Such events must happen together. The event of the block's mirror image counts as well.
     """
@@ -271,7 +276,8 @@ def predict_stick(coefficients, slopes, degree, end_velocity, now, step_end):
     if velocity_now > ROUNDING_TOLERANCE:
         return find_crossing(coefficients, degree, now, step_end)
     # The velocity is 0 now, apart from rounding. If it rises, the block is released now, and sticks
-    # after the velocity has passed its maximum.
+    # after the velocity has passed its maximum. To find this turning point, the coefficients of the
+    # slope are computed, too.
     turn = find_turning_point(coefficients, slopes, degree, now, step_end)
     if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
         return find_crossing(coefficients, degree, turn, step_end)
@@ -335,21 +341,23 @@ def predict_law_kink(coefficients, slopes, degree, now, step_end):
     """
     if evaluate_polynomial(coefficients, degree, now) < -ROUNDING_TOLERANCE:
         return find_threshold_crossing(coefficients, slopes, degree, now, step_end)
-    # The block is at the kink now. If the polynomial rises, the block passes it at this instant.
+    # The block is at the kink now. If the polynomial rises, the block passes it at this instant. To
+    # find its turning point, the coefficients of its slope are computed, too.
     turn = find_turning_point(coefficients, slopes, degree, now, step_end)
     if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
         return now
-    # If the polynomial falls, the block can return to the kink only after the turning point.
+    # If it falls, the block can return to the kink only after the turning point.
     return find_threshold_crossing(coefficients, slopes, degree, turn, step_end)
 
 
 @kernel_function(inline=True)
 def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, top):
-    """Predict when the blocks first..last-1 reach the kink of their law.
+    """Predict when the blocks first..last-1 reach the kink of their law, from ``now`` on.
 
-    The search begins at ``now`` and ends at ``step_end``, the end of the step. Friction decreases
-    with its argument, the slip or the slip rate, only before the kink.
+    Friction decreases with its argument, the slip or the slip rate, until it reaches the kink, and
+    is constant beyond. Without such a law (``law_kink`` is None) nothing is predicted.
 
+    now, step_end : start and end of the search, counted from the start of the step
     top : order of the highest time derivative of slip
     """
     if law_kink is not None:
@@ -371,11 +379,11 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
             if is_out_of_reach:
                 continue
             # The Taylor polynomial of the argument minus its value at the kink, times the sign, so
-            # that it rises to 0 in either case.
-            factor = sign
+            # that it rises to 0 in either case. Its term of power k is divided by k!.
+            signed_inverse_factorial = sign
             for k in range(degree + 1):
-                coefficients[k] = factor * w[k + law_kink.argument_row, i]
-                factor *= INVERSE_INTEGERS[k + 1]
+                coefficients[k] = signed_inverse_factorial * w[k + law_kink.argument_row, i]
+                signed_inverse_factorial *= INVERSE_INTEGERS[k + 1]
             # Slip is counted from the release. In a law of slip rate, slip_at_release is 0.
             argument_at_kink = motion.slip_at_release[i] + law_kink.argument_at_kink
             if law_kink.argument_row == SLIP:

@@ -15,7 +15,9 @@ step, so only a few blocks change, and they change exactly as in a new expansion
 lattice.
 
 All times are counted from the start of the step: ``now`` is the time of the event, and ``step_end``
-is the end of the step. ``top`` is the order of the highest time derivative of slip.
+is the end of the step. ``top`` is the order of the highest time derivative of slip. Arguments such
+as ``medium`` and ``motion`` are groups of numbers and arrays, which `arrays` defines. Row k of
+``w``, which is ``motion.derivatives``, is time derivative k of slip; its columns are blocks.
 """
 
 import numpy as np
@@ -86,8 +88,9 @@ def start_sliding(block_change, medium, motion, block, now, top):
     block_change[ACCELERATION] = force + damping * (w[VELOCITY, block - 1] + w[VELOCITY, block + 1])
     friction = begin_weakening(motion, medium.law_kink, block)
     block_change[ACCELERATION] -= friction
-    # Its higher time derivatives come only from the motion of the two neighbours. Two more are
-    # computed than the step keeps, since derivative k + 2 follows from derivative k of a neighbour.
+    # Its higher time derivatives come only from the motion of the two neighbours: derivative k + 2
+    # follows from derivative k of their slip, and from derivative k + 1 because of the damping. Two
+    # more are computed than the step keeps.
     for k in range(1, top + 1):
         block_change[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
         if k < top:
@@ -163,7 +166,8 @@ def spread_difference(difference, medium, motion, event, left, right, top):
     top : order of the highest time derivative
     """
     rows, block_change = difference.derivatives, difference.block_change
-    # Column p of the difference is the block p + block_of_column_0 of the lattice.
+    # Column p of the difference is the block p + block_of_column_0 of the lattice. Loops over
+    # unsigned integers are faster (see `stencils`).
     block_of_column_0 = np.uint64(event.block) - np.uint64(CENTRE_COLUMN)
     # Each derivative follows from the two before it. Derivatives 0 and 1 do not change.
     for k in range(2, top + 1):
@@ -179,13 +183,15 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         if medium.alpha != 0.0:
             subtract_rate_strengthening(rows, k, first, last, medium.alpha)
         add_weakening(rows, k, first, last, block_of_column_0, motion, medium.law_kink)
-        # After a stick the block is held, so the change of its neighbours does not move it.
+        # A block that stuck is held, so the change of its neighbours does not move it. Any other
+        # block of an event is moved by its neighbours, too.
         if event.is_stick:
             rows[k, CENTRE_COLUMN] = block_change[k]
         else:
             rows[k, CENTRE_COLUMN] += block_change[k]
     if event.is_stick:
-        # The motion of the block itself was changed when the block was stopped (`hold_block`).
+        # `hold_block` has set the motion of the block that stuck to 0. Only the change of the other
+        # blocks is still to be added.
         for k in range(2, top + 1):
             rows[k, CENTRE_COLUMN] = 0.0
 
@@ -242,10 +248,11 @@ def add_difference(motion, difference, first, last, block, now, step_end, top):
 
 @kernel_function(inline=True)
 def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
-    """Return the change of the slope of the viscous loss by an event of a block, up to a factor.
+    """Return the change of the time derivative of the viscous dissipation by an event of a block.
 
-    It is the sum of dv da over the pairs of the block and its two neighbours: dv is the difference
-    of the two velocities, and da the change of the difference of the two accelerations.
+    The result lacks a constant factor. It is the sum of dv da over the pairs of the block and its
+    two neighbours: dv is the difference of the two velocities, and da the change of the difference
+    of the two accelerations.
     """
     if medium.beta <= 0.0:
         return 0.0
@@ -271,17 +278,18 @@ def update_mirror_image(motion, top):
 def predict_events_again(medium, motion, segments, prediction, first, last, now, step_end):
     """Predict the events of blocks first..last-1, whose motion an event has changed at ``now``.
 
-    The two neighbours of these blocks feel a different stress, and may be released, too. Returns
-    False if a velocity is not finite at ``step_end``, and the lowest stress of blocks at rest.
+    Returns two values: False if a velocity is not finite at ``step_end``, and the lowest stress of
+    the blocks at rest for which a release was predicted again.
     """
     top = motion.derivatives.shape[0] - 1
+    # The motion of these blocks also changes the stress of the block on either side of them.
     lowest_stress = predict_releases(
         medium, motion, segments, prediction, first - 1, last + 1, now, step_end
     )
+    # Replace the sticks and kinks that were predicted before the event. Every block may stick.
     drop_predicted_events(prediction, first, last)
-    # Each of these blocks may stick.
-    count = last - first
-    is_finite = predict_sticks(motion, prediction, first, last, count, now, step_end, top)
+    may_stick_count = last - first
+    is_finite = predict_sticks(motion, prediction, first, last, may_stick_count, now, step_end, top)
     predict_law_kinks(motion, medium.law_kink, prediction, first, last, now, step_end, top)
     return is_finite, lowest_stress
 

@@ -3,7 +3,8 @@
 Each step computes the forces, advances the velocities with them, and then the slip with the new
 velocities. A block is released or stopped at the step at which its stress or velocity passes the
 threshold. The scheme is of first order in the step. Its front speed can lock to dx/(n dt) with an
-integer n.
+integer n. Arguments such as ``medium``, ``motion`` and ``tally`` are groups of numbers and arrays,
+which `arrays` defines.
 """
 
 import math
@@ -56,7 +57,7 @@ def combine_laws(laws: Sequence[type[Friction]]):
 
     @kernel_function()
     def friction(law, slip, velocity, parameter_1, parameter_2):
-        """Return the friction of the law at a position of the list."""
+        """Return the friction of the law whose position in the list is ``law``."""
         if law == 0:
             return friction_of_first(slip, velocity, parameter_1, parameter_2)
         return friction_of_others(law - 1, slip, velocity, parameter_1, parameter_2)
@@ -115,9 +116,9 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 
     A block whose velocity would be negative sticks.
 
-    Returns the largest velocity (inf if one is not finite), and the work against friction. It is
-    friction by a law that is not linear (law_number > 0): the forces already contain linear
-    friction alpha v, whose work is a part of `viscous_loss`.
+    Returns the largest velocity (inf if one is not finite), and the work against friction by a law
+    that is not linear (law_number > 0). Linear friction alpha v is already contained in the forces,
+    and its work in `viscous_loss`.
 
     dt : length of the step
     end : time at its end
@@ -237,10 +238,12 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
             return ALL_STUCK
         # From here on, only the range of the sliding blocks.
         first, last = find_sliding_range(sliding, first, last)
-        fastest, work = advance_blocks(medium, motion, sliding, history, dt, end, first, last)
+        fastest, friction_work = advance_blocks(
+            medium, motion, sliding, history, dt, end, first, last
+        )
         if fastest == math.inf:
             return BLOWN_UP
-        tally.friction_loss += work
+        tally.friction_loss += friction_work
         if medium.is_mirrored:
             velocity[0] = velocity[2]
         tally.viscous_loss += viscous_loss(medium, velocity, dt, first, last)
@@ -249,6 +252,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         tally.steps += 1
         tally.block_updates += sliding_count
         tally.time = end
+        # The largest force alone would drive a block from rest to the velocity largest_force * end.
         if not fastest <= BLOW_UP_FACTOR * (1.0 + limits.largest_force * end):
             return BLOWN_UP
         take_samples(recorder, motion, tally, end)

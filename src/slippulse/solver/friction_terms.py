@@ -5,6 +5,10 @@ dissipation is part of the viscous loss. Piecewise linear friction falls with th
 of a block until it reaches a kink, beyond which friction is constant. Passing the kink, in either
 direction, is an event. Kernels are compiled separately for laws with a kink: where ``law_kink`` is
 None, the functions below are empty and cost nothing.
+
+The groups of numbers and arrays ``medium``, ``motion`` and ``segments`` are defined in `arrays`.
+Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its columns are
+blocks.
 """
 
 from typing import NamedTuple
@@ -61,13 +65,15 @@ def begin_weakening(motion, law_kink, block):
     law_kink : constants of a piecewise linear law; None for other laws, which need no start
     """
     if law_kink is not None:
+        # The factor is 0 in the zone without friction, and otherwise 1.
         weakening_slope = motion.law_factor[block] * law_kink.weakening_slope
         motion.weakening_slope[block] = weakening_slope
         if law_kink.argument_row == SLIP:
             # The slip at the start of the step, plus the slip by earlier events of the step.
             slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
             motion.slip_at_release[block] = slip
-        # The argument of the law, the slip since the release or the slip rate, is 0 now.
+        # The argument of the law, the slip since the release or the slip rate, is 0 now. From here
+        # to the kink, friction falls to its value beyond the kink.
         return law_kink.friction_beyond + weakening_slope * law_kink.argument_at_kink
     return 0.0
 

@@ -51,7 +51,7 @@ class Lattice:
         assert self.localised == (scene.scheme == "localised")
         self.scene, self.samples = scene, samples
         # A caller can lower this number, to look at the lattice after fewer steps.
-        self.call_steps = MAX_CALL_STEPS
+        self.max_call_steps = MAX_CALL_STEPS
         self.is_mirrored = scene.symmetric
         self.medium = self._make_medium(beta)
         self.first_block = 0
@@ -221,7 +221,8 @@ class Lattice:
     def _limits_of_call(self) -> arrays.Limits:
         """Return the limits of the next call of the kernel.
 
-        A call ends after some updates of single blocks, so that Python can report the progress.
+        A call makes a limited number of updates of single blocks, so that Python can report the
+        progress between two calls.
         """
         scene = self.scene
         updates_per_step = np.count_nonzero(self.sliding) if self.localised else self.size
@@ -231,7 +232,7 @@ class Lattice:
             largest_step=scene.max_step * scene.dx,
             end_time=scene.duration,
             largest_force=self.largest_force,
-            max_steps=int(min(steps, self.call_steps)),
+            max_steps=int(min(steps, self.max_call_steps)),
         )
 
     def _check_stability(self, status: int, time_advanced: float, limits: arrays.Limits) -> None:
@@ -240,6 +241,8 @@ class Lattice:
         status : reason why the kernel stopped: BLOWN_UP or STEPS_DONE
         time_advanced : simulated time of the call
         """
+        # Steps that end early are shorter than the others. If they are this short on average, the
+        # same blocks have events again and again at one instant.
         shortest_step = taylor.SIMULTANEITY_TOLERANCE * limits.largest_step
         if status == arrays.BLOWN_UP:
             reason = "slip velocity is not finite or larger than the pre-stress can drive"

@@ -18,6 +18,9 @@ Here h is the side of a square cell. The left column of the scheme is at x = i h
 half a cell further. Rows lie at y = j h from the bottom to the top, and the two outer rows have
 half the height of a cell. Velocities are known half a time step before and after the stresses. The
 scheme conserves a discrete energy, so the energy that friction dissipates is exact to rounding.
+
+The kernels get the constants of the layer (``elastic``), its velocities and stresses (``fields``,
+with rows j and columns i), and the state of the nodes at its bottom (``fault``).
 """
 
 import math
@@ -79,7 +82,8 @@ class LayerScene:
             check_number(name, getattr(self, name), at_least=0.0)
         check_number("cells", self.cells, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
-        allowed = f"a number <= {MAX_DAMPING_RATIO} divided by the number of cells"
+        largest = MAX_DAMPING_RATIO / self.cells
+        allowed = f"a number <= {largest:.4g}, above which {self.cells} cells are unstable"
         check_that(self.beta * self.cells <= MAX_DAMPING_RATIO, "beta", self.beta, allowed)
         allowed = "a symmetric scene, if the trail is finite"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
@@ -209,6 +213,7 @@ def update_stresses(elastic, fields, first, last):
             dvy_dy = weight_above * above[i] - weight_below * below[i]
             s_xx[i] += direct * dvx_dx + lateral * dvy_dy
             s_yy[i] += lateral * dvx_dx + normal * dvy_dy
+        # Column 0 is a mirror image, in which s_xx has the opposite sign.
         if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
     # s_xy, which lies half a cell above row j.
@@ -239,6 +244,7 @@ def update_velocities(elastic, fields, first, last):
         v = vy[j, first:last]
         for i in range(v.shape[0]):
             v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
+        # Column 0 is a mirror image, in which v_y has the opposite sign.
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
     # v_x on the rows above the bottom. A top row that moves has only the s_xy below it.
@@ -320,7 +326,8 @@ def advance_node(elastic, fields, fault, i, dt, time):
     distance = 0.5 * dt * (velocity_before + velocity)
     if elastic.is_mirrored and i == 1:
         distance *= 0.5
-    # The friction that acted follows from the change of velocity, also when the node sticks.
+    # The friction that acted follows from the change of velocity, also when the node sticks. The
+    # two numbers in ``work`` are the work of the pre-stress, and its work minus that of friction.
     friction = load - (velocity - velocity_before) / (2.0 * elastic.ratio)
     fault.work[0] += abs(fault.tau[i]) * distance
     fault.work[1] += (fault.tau[i] - friction) * distance
@@ -348,9 +355,10 @@ def add_damping(elastic, earlier, fields, total, first, last):
 def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
     """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach.
 
-    damped_fields : the fields, those of the step before, and those with damping in the stresses
-    columns : position of x = 0, and numbers of columns on each side that are advanced
+    damped_fields : `DampedFields`, which share the velocities but not the stresses
+    columns : `Columns`, which limit the range that is advanced
     """
+    # The stresses of the strain, those of the step before, and those that include damping.
     fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
@@ -373,6 +381,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
     The slip and v_x are returned in units of ``slip_scale``, without the outermost columns.
     """
+    # The time step, and the grid along x.
     h = 1.0 / scene.cells
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
@@ -390,8 +399,9 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     columns = Columns(centre, nucleation_columns, trail_columns)
     damped = damped_fields(elastic, fields)
     advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
-    # The energy is balanced at the time of the velocities that are copied here. The stresses are
-    # needed half a step before and half a step after this time.
+    # The energy is computed at the time of the velocities that are copied here. This needs the
+    # stresses half a step before, which are copied as well, and those half a step after, which the
+    # last step computes.
     earlier = Fields._make(array.copy() for array in fields)
     work_of_prestress, work_without_friction = fault.work.tolist()
     advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
@@ -459,6 +469,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
+    time_step = ratio / scene.cells
     # With these types, the kernel computes in the precision of the fields.
     number_type = scene.number_type
     return Elastic(
@@ -469,7 +480,7 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
         coupling=scene.coupling,
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
-        damping=number_type(scene.beta / (ratio / scene.cells)),
+        damping=number_type(scene.beta / time_step),
         above=above.astype(number_type),
         below=below.astype(number_type),
         direct=np.where(normal, 1.0, 1.0 - lateral**2).astype(number_type),
@@ -527,8 +538,9 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes = columns.copy()
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
-    # The strain energy of normal stresses in plane strain, with 1 - gamma as ``lateral``, and that
-    # of shear stress. The square of a stress is its earlier value times its later value.
+    # The strain energy of normal stresses in plane strain, and that of shear stress. The square of
+    # a stress is its earlier value times its later value. Here lateral is 1 - gamma, the value of
+    # all rows except a free top, where it is 0.
     lateral = elastic.lateral.max()
     equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
     mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx

@@ -65,9 +65,9 @@ def compute_energies(lattice: Lattice, totals: dict) -> dict:
     weights = _block_weights(lattice)
     viscous_loss = totals["viscous_loss"]
     if medium.law_number:
-        # A law that is not linear has a number, and is solved by symplectic Euler. This is a
-        # leapfrog scheme: velocities belong to the time half a step before that of the slip. The
-        # energies are computed at the time of the velocities.
+        # Laws that have a number are not linear in slip velocity, and are solved by symplectic
+        # Euler. In this scheme, velocities belong to the time half a step before that of the slip.
+        # The slip is moved back to this time, at which the energies are computed.
         step = lattice.scene.max_step * dx
         slip = slip - 0.5 * step * velocity
         strain = _gradient(slip, dx)
@@ -152,7 +152,8 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
         stress += medium.beta * np.diff(velocity, 2) / dx**2
     is_stuck = ~lattice.sliding[1:-1]
     lowest_stress = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
-    # A block would slide backwards at a stress of -(1 + 2 mu_k/(mu_s - mu_k)).
+    # A block slides backwards at the stress -(1 + 2 r) if r is the friction ratio,
+    # mu_k/(mu_s - mu_k). At this ratio, the block of the lowest stress would just do so.
     friction_ratio_needed = max(0.0, -(lowest_stress + 1.0) / 2.0)
     first_stuck_position = (totals["first_stuck_block"] + lattice.first_block) * dx
     return compute_energies(lattice, totals) | {

@@ -13,6 +13,11 @@ therefore cheap to compute, and it gives the motion at any time of the step. One
 If two events are so close that each would change the other, the step ends early, and they happen
 together at its end. Only segments of sliding blocks and their neighbours are touched, since the
 derivatives of all other blocks are zero.
+
+Arguments such as ``medium``, ``motion`` and ``tally`` are groups of numbers and arrays, which
+`arrays` defines. Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its
+columns are blocks. Segment r of sliding blocks begins with the block ``edges[2 r]`` and ends before
+the block ``edges[2 r + 1]``.
 """
 
 import math
@@ -155,10 +160,25 @@ def compute_dissipation(medium, motion, segments):
 
 @kernel_function()
 def clear_slope_changes(slope_changes):
-    """Forget how the events of the previous step changed the slope of a dissipation."""
+    """Set the three sums to 0 that `add_slope_change` makes over the events of a step."""
     slope_changes.moment_0 = 0.0
     slope_changes.moment_1 = 0.0
     slope_changes.moment_2 = 0.0
+
+
+@inlined_kernel
+def begin_step_events(scratch, segments):
+    """Empty the list of the events of a step, and start the list of all blocks that move in it.
+
+    At first, the blocks that move are those that slide. Events add others.
+    """
+    moved, step_events = scratch.moved, scratch.step_events
+    for q in range(2 * segments.count.n):
+        moved.edges[q] = segments.edges[q]
+    moved.count.n = segments.count.n
+    step_events.count.n = 0
+    clear_slope_changes(step_events.loss_slope_changes)
+    clear_slope_changes(step_events.work_slope_changes)
 
 
 @kernel_function()
@@ -199,8 +219,8 @@ def loss_of_step(h, dissipation, slope, slope_changes):
 def complete_losses(medium, motion, segments, tally):
     """Complete the energy losses of the previous step, and return the present dissipation.
 
-    The losses of that step, of length h (``pending_step``), still lack the part h D_1/3. Here D_1
-    is the dissipation at its end, which is now (see `loss_of_step`).
+    Of the losses of that step, `add_losses` has left out h/3 times the dissipation at its end,
+    which is now. Here h is the length of that step, ``pending_step``.
     """
     viscous, viscous_slope = 0.0, 0.0
     if medium.beta > 0.0 or medium.alpha != 0.0:
@@ -214,9 +234,10 @@ def complete_losses(medium, motion, segments, tally):
 
 @inlined_kernel
 def add_losses(medium, tally, step_events, dissipation, h):
-    """Add the energy losses of a step of length h, except for the part from its end.
+    """Add the energy losses of a step of length h, apart from one part.
 
-    `complete_losses` adds this part at the start of the next step.
+    The part that is left out is h/3 times the dissipation at the end of the step. It is not known
+    yet, and `complete_losses` adds it at the start of the next step.
 
     dissipation : `Dissipation` at the start of the step
     """
@@ -358,9 +379,10 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
-    # The viscous dissipation is beta/dx times the sum of (v_{i+1} - v_i)^2 over all neighbours.
-    # Its time derivative, the slope, therefore has a factor of 2. On a mirrored lattice each pair
-    # counts twice, and each block too, except block 1 on the axis.
+    # The event changes the time derivatives (slopes) of the viscous dissipation and of the power of
+    # friction. The first is the time derivative of beta/dx times the sum of (v_{i+1} - v_i)^2 over
+    # all pairs of neighbours, hence the factor 2. On a mirrored lattice each pair counts twice, and
+    # each block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
@@ -411,7 +433,8 @@ def finish_step(medium, motion, scratch, tally, order, h):
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
-    # A block at rest has the acceleration 0. For sliding blocks the next step computes it.
+    # The next step computes the accelerations of sliding blocks in the row SLIP_INCREMENT. That of
+    # a block which has stuck is 0.
     for q in range(step_events.count.n):
         if step_events.stuck_block[q] >= 0:
             w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0
@@ -467,7 +490,7 @@ def advance(  # noqa: C901, PLR0912
     size = motion.tau.shape[0]
     time_tolerance = SIMULTANEITY_TOLERANCE * limits.largest_step
     tally, prediction = history.tally, scratch.prediction
-    moved, step_events = scratch.moved, scratch.step_events
+    step_events = scratch.step_events
     for _ in range(limits.max_steps):
         # Stage 1: the derivatives at the start of the step, and the end of the run.
         start = tally.time
@@ -485,8 +508,6 @@ def advance(  # noqa: C901, PLR0912
         first = segments.edges[0]
         if last >= size - EDGE_BLOCKS or (first <= EDGE_BLOCKS and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
-        clear_slope_changes(step_events.loss_slope_changes)
-        clear_slope_changes(step_events.work_slope_changes)
 
         # The step lasts from the time `start` to `end`, and has the length h. Times of events are
         # counted from its start.
@@ -494,11 +515,7 @@ def advance(  # noqa: C901, PLR0912
         # Stage 2: the events that will happen within the step.
         if not predict_events(medium, motion, segments, prediction, tally, h, top):
             return BLOWN_UP
-        # At first, the blocks that move in this step are those that slide. Events add others.
-        for q in range(2 * segments.count.n):
-            moved.edges[q] = segments.edges[q]
-        moved.count.n = segments.count.n
-        step_events.count.n = 0
+        begin_step_events(scratch, segments)
 
         # Stage 3: one event after another. The step ends early at an event that has to happen
         # together with others, or after the largest number of events.

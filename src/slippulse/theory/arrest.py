@@ -17,6 +17,8 @@ from .two_fronts import ExactTransition, fast_fronts
 
 # At this number of widths from its centre, a Gaussian is smaller than any positive number.
 GAUSSIAN_END_IN_WIDTHS = 48.0
+# At this number of widths, the integral of the rest of a Gaussian is below 1e-120.
+NEGLIGIBLE_REST_IN_WIDTHS = 24.0
 # The fronts have three sections: the right front, and the fast and the slow part of the left front.
 # The far pulse is computed on this number of characteristics from each section.
 SAMPLES_PER_SECTION = 400
@@ -54,10 +56,8 @@ class ArrestingCrack(ExplainsRemovedNames):
     ) -> None:
         self.balance_position = prestress_balance_position(prestress)
         self.prestress = prestress
-        # Here the Gaussian and the table of the pre-stress have ended. Beyond, the pre-stress is 0,
-        # and the right front runs at the wave speed.
-        width = prestress.width or 0.0
-        self.end = max([GAUSSIAN_END_IN_WIDTHS * width, *(x for x, _ in prestress.points)])
+        # Beyond this position the pre-stress is 0, and the right front runs at the wave speed.
+        self.end = _right_end(prestress, GAUSSIAN_END_IN_WIDTHS)
         # The right front up to there, and the left front as far as it is faster than the waves.
         self.fronts = fast_fronts(
             prestress, damping_ratio=damping_ratio, release=release, reach=self.end
@@ -142,7 +142,8 @@ class ArrestingCrack(ExplainsRemovedNames):
         """
         # The pulse consists of waves that run to the right. Each of them starts on a front when the
         # front arrives, and x - t does not change on it.
-        on_right_front = np.linspace(0.5 * self.end, 0.0, SAMPLES_PER_SECTION)
+        first_start = _right_end(self.prestress, NEGLIGIBLE_REST_IN_WIDTHS)
+        on_right_front = np.linspace(first_start, 0.0, SAMPLES_PER_SECTION)
         on_fast_left_front = np.linspace(0.0, self.slow_start, SAMPLES_PER_SECTION)
         on_fast_fronts = np.concatenate([on_right_front, on_fast_left_front[1:]])
         x_minus_t_of_fast = on_fast_fronts - self.fronts.arrival(on_fast_fronts)
@@ -159,3 +160,13 @@ class ArrestingCrack(ExplainsRemovedNames):
         starts = np.concatenate([on_fast_fronts, on_slow_front])
         velocity = [0.5 * integral(self.prestress, x, self.end) for x in starts]
         return np.concatenate([x_minus_t_of_fast, x_minus_t_of_slow]), np.array(velocity)
+
+
+def _right_end(prestress: Prestress, widths: float) -> float:
+    """Return the position where all Gaussians, steps and points of a pre-stress have ended.
+
+    A Gaussian ends at this number of widths on the right of its centre.
+    """
+    ends_of_gaussians = [centre + widths * width for centre, width in prestress.gaussians]
+    steps_and_points = [x for x, _ in (*prestress.steps, *prestress.points)]
+    return max([0.0, *ends_of_gaussians, *steps_and_points])

@@ -219,9 +219,10 @@ class Curve:
         return np.concatenate([x, time, time + x, time - x]).T
 
     def coefficients(self, numbers: np.ndarray) -> np.ndarray:
-        """Return the coefficients of polynomials, given by their numbers (`polynomial_numbers`).
+        """Return the coefficients of polynomials, each of which is one field on one panel.
 
-        A long curve computes only the requested ones, unless they are many (see MAX_EAGER_PANELS).
+        `polynomial_numbers` gives their numbers. A long curve computes only the requested ones,
+        unless they are many (see MAX_EAGER_PANELS).
         """
         panel_count = len(self.panels)
         is_short = panel_count <= MAX_EAGER_PANELS
@@ -296,7 +297,8 @@ class Curve:
             -self.edges[::-1], lowest_levels=levels_to_left, y=-y, level=xi
         )
         left = len(self.panels) - 1 - left_of_mirrored
-        # Both sides are solved together. The first half of the results belongs to the left.
+        # Both sides are solved together: the polynomials of T - x on the left panels, and then
+        # those of T + x on the right panels.
         numbers_left = self.polynomial_numbers("t_minus_x", left)
         numbers_right = self.polynomial_numbers("t_plus_x", right)
         numbers = np.concatenate([numbers_left, numbers_right])
@@ -337,6 +339,7 @@ class Curve:
         # The front is on the panel that leads to the nearest of these edges. Panel k lies between
         # the edges k and k + 1.
         panel = np.array([released_later[0] - 1 if side > 0.0 else released_later[-1]])
+        # The parameter on this panel at which T is the time.
         s = self._find_parameters(self.polynomial_numbers("time", panel), np.array([time]))
         front = float(self.evaluate("x", panel, s)[0])
         # If x itself is on this panel, the result is not behind it.
@@ -345,9 +348,9 @@ class Curve:
     def _find_parameters(self, numbers: np.ndarray, level: np.ndarray) -> np.ndarray:
         """Return the parameters s at which fields have the given levels, each on its panel.
 
-        The fields are polynomials that are monotonic on their panels, given by their numbers
-        (`polynomial_numbers`). Newton's method starts from linear interpolation between the ends of
-        the panel. Its steps do not leave the panel.
+        Each field (such as T + x) is a polynomial of s on its panel, where it is monotonic. numbers
+        says which field and which panel (see `polynomial_numbers`). Newton's method starts from
+        linear interpolation between the ends of the panel. Its steps do not leave the panel.
         """
         at_left, at_right = self.end_values[:, numbers]
         rise = at_right - at_left
@@ -405,12 +408,12 @@ def _lowest_level_beyond(
 ) -> list[np.ndarray]:
     """Return, for each panel, the lowest level of this panel and of later ones in its region.
 
-    The result has one array for each region. A region ends at a restart, because levels have a
-    maximum there. A characteristic that meets the curve before this maximum is not followed beyond
-    it, so that panels of later regions do not count.
+    The result has one array for each region. A region ends at a restart, where levels have a
+    maximum. A characteristic that meets the curve before this maximum is not followed beyond it,
+    so that panels of later regions do not count.
 
-    levels : T + x or T - x at the far end of each panel, in the order in which a characteristic
-        crosses the panels
+    levels : T + x at the right ends of the panels, from left to right, for characteristics that run
+        to the right; T - x at the left ends, from right to left, for those that run to the left
     edges : ends of the panels, in the same order
     restarts : positions where the regions end
     """
@@ -427,9 +430,10 @@ def _panels_of_crossings(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return, for each point, the panel on which its characteristic to the right meets the curve.
 
-    On this panel T + x rises to its value at the point (level), for the last time in its region.
-    The regions are searched from that of the point to the right, until one has such a panel. Also
-    return a mask that is False for points without a panel; for these the last panel is returned.
+    There T + x rises to its value at the point (level). Regions, the parts of the curve between
+    restarts, are searched from that of the point to the right. In the first region in which T + x
+    reaches the level, the panel is the last one on which it does so. Also return a mask that is
+    False for points without a panel; for these the last panel is returned.
 
     edges : ends of the panels
     lowest_levels : for each region and each of its panels, the lowest T + x at the right ends of

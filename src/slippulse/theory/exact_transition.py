@@ -74,9 +74,10 @@ def exact_transition_displacement(
 
 
 def _distance_to_uniform(prestress: Prestress) -> float:
-    """Return the distance beyond which the pre-stress is uniform."""
-    width = prestress.width or 0.0
-    return max([20.0 * width, *(x for x, _ in prestress.points)])
+    """Return the distance from x = 0 beyond which the pre-stress is uniform."""
+    ends_of_gaussians = [abs(centre) + 20.0 * width for centre, width in prestress.gaussians]
+    steps_and_points = [abs(x) for x, _ in (*prestress.steps, *prestress.points)]
+    return max([0.0, *ends_of_gaussians, *steps_and_points])
 
 
 def uniform_transition_time(

@@ -32,8 +32,6 @@ MAX_PHASE = 2.0
 MAX_SCALED_LENGTH = 4.0
 # Largest length of a panel in x without leaf springs.
 MAX_LENGTH_WITHOUT_SPRINGS = 8.0
-# The smallest proper length per unit of x that is taken into account.
-MIN_PROPER_LENGTH = 1e-3
 MAX_PANELS = 20_000
 # Slow fronts into pre-stress below this are not followed.
 MIN_PRESTRESS = -1e20
@@ -141,23 +139,30 @@ class FastFront:
     def max_panel_length(self, background: Interval) -> float:
         """Return the largest length of a panel in an interval of linear pre-stress.
 
-        The phase of the waves changes by at most MAX_PHASE along such a panel. This phase is
-        kernel_rate times the proper length, sqrt(dx^2 - dT^2), along the front.
+        The phase of the waves changes by at most MAX_PHASE along such a panel. It changes by
+        kernel_rate times the proper length along the front, the integral of sqrt(dx^2 - dT^2).
         """
         if self.kernel_rate == 0.0:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         # The phase changes fastest where the front is fastest, at the higher end of the interval.
         level = max(background.left_value, background.right_value)
-        slowness = self.slowness(np.array(np.clip(level, 0.0, 1.0)))
-        proper_length_per_x = float(np.sqrt(1.0 - slowness**2)) if level > 0.0 else 1.0
-        length = min(MAX_PHASE / max(proper_length_per_x, MIN_PROPER_LENGTH), MAX_SCALED_LENGTH)
+        # If the level is not positive, tau can only be so because of a Gaussian of unknown height.
+        # Then the largest possible phase is assumed.
+        proper_length_per_x = 1.0
+        if level > 0.0:
+            slowness = self.slowness(np.array(min(level, 1.0)))
+            proper_length_per_x = float(np.sqrt(1.0 - slowness**2))
+        # This length is in units of 1/kernel_rate.
+        length = MAX_SCALED_LENGTH
+        if length * proper_length_per_x > MAX_PHASE:
+            length = MAX_PHASE / proper_length_per_x
         return length / self.kernel_rate / self.refinement
 
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
         """Return the panels of a front that runs right from a point, and the point where they end.
 
-        They end where tau turns negative, or at the position ``stop``. Otherwise they end with the
-        piece of pre-stress in which the front reaches the time ``until``, later than this time.
+        They end where tau turns negative, at the position ``stop``, or after the time ``until``. In
+        the last case they go on to the end of the piece of pre-stress that the front is in.
         """
         x, time = start
         panels: list[Panel] = []

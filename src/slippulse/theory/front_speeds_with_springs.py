@@ -48,10 +48,10 @@ def lattice_front_speed(
     has a closed form without damping, and tends to `front_speed` as gamma dx^2 -> 0. Blocks that
     stick behind the front are neglected. The relative error is below 1e-6 next to tau_0 = 1 for
     gamma dx^2 (1 + beta/dx) up to 10.
-    Raises ValueError: outside the ranges below, or if tau0 is not above the least pre-stress. Only
-    fronts faster than sqrt(4 + gamma dx^2)/pi count, which is the phase velocity of the shortest
-    waves. If friction weakens with slip velocity, only fronts count behind which slip does not run
-    away.
+    Raises ValueError: outside the ranges below, or if tau0 is not above the least pre-stress. It is
+    the least one of all fronts that are faster than sqrt(4 + gamma dx^2)/pi, the phase velocity of
+    the shortest waves, and behind which slip does not run away. (Slip may run away if friction
+    weakens with slip velocity.)
 
     Parameters
     ----------

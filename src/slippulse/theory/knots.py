@@ -108,10 +108,11 @@ class Knots(NamedTuple):
         return (self.kind[k] == BRIEF_SLIP) | (self.kind[k + 1] == BRIEF_SLIP)
 
     def has_jump(self, k: np.ndarray) -> np.ndarray:
-        """Return a mask of the intervals in which the edge jumps or turns from fast to slow.
+        """Return a mask of the intervals in which the edge jumps.
 
-        The edge jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
-        although it is not known to be slow there.
+        It jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
+        although it is not known to be slow there. A change of the edge from faster to slower than
+        the waves counts as a jump.
         """
         duration = np.abs(self.stick[k + 1] - self.stick[k])
         length = self.x[k + 1] - self.x[k]

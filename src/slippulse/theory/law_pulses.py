@@ -128,6 +128,8 @@ class _LinearSlip:
         curvature = self.evaluate(xi, 2)
         # U'' changes from negative to positive between a sample and the next one behind it.
         minima = np.flatnonzero((curvature[:-1] < 0.0) & (curvature[1:] >= 0.0))
+        # The sample before the minimum. Without a minimum it is beyond the last sample, so that the
+        # bracket is empty.
         first = minima[0] if minima.size else xi.size
         has_stopped = self.evaluate(xi, 1) >= 0.0
         return _VelocityMinimum(
@@ -218,12 +220,14 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     def sign_of_speed_error(v: float) -> float:
         """Return 1 if the speed v is too high for a steady rupture, and -1 if it is too low.
 
-        If it is too low, the slip stops before the first minimum of slip velocity.
+        If it is too low, slip velocity falls to 0 before its first minimum. If it is too high, slip
+        velocity is above 0 at the minimum, and grows behind it.
         """
         zone_end, slip_beyond_zone = _zone_and_slip_beyond(
             v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
         )
         if math.isnan(zone_end):
+            # The slip stops while friction still weakens.
             return -1.0
         return -1.0 if slip_beyond_zone.first_velocity_minimum().stops_before else 1.0
 
@@ -323,7 +327,11 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
     evaluation_numbers = count()
 
     def slopes(distance: float, state: np.ndarray) -> list[float]:
-        """Return the derivatives of slip and strain by the distance behind the front."""
+        """Return the derivatives of slip and strain by the distance behind the front.
+
+        That of the strain follows from (v^2 - 1) U'' + gamma U = tau_0 - friction.
+        """
+        # The evaluations are counted, because a stiff law would take for ever.
         if next(evaluation_numbers) == MAX_EVALUATIONS:
             reason = f"the pulse takes more than {MAX_EVALUATIONS} evaluations of the friction law"
             allowed = "larger values, or weaker friction"

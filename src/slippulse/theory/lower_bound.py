@@ -70,12 +70,12 @@ class PastOnCurve(NamedTuple):
 
 
 def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.inf) -> np.ndarray:
-    """Return positions that have stuck until a time, between pairs of positions that slide then.
+    """Return positions that have stuck before a time, between positions that still slide then.
 
-    Row 0 of x has the left positions of the pairs, and row 1 the right ones. Each pair is cut into
-    smaller and smaller parts, until a lower bound of du/dt in between is positive. The search ends
-    at the first positions found, and the result is empty if nothing has stuck. first_x is the
-    position that sticks first, at this time, if it is known.
+    Row 0 of x has the left positions of pairs, and row 1 the right ones. The interval of each pair
+    is cut into smaller and smaller parts, until a lower bound of du/dt in between is positive. The
+    search ends as soon as it finds positions; the result is empty if nothing has stuck. first_x is
+    the position that sticks first, at this time, if it is known.
     """
 
     def velocity_at(x: np.ndarray) -> np.ndarray:
@@ -83,7 +83,7 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.in
         return part.velocity(x.ravel(), np.full(x.size, time)).reshape(x.shape)
 
     velocity = velocity_at(x)
-    # Pairs that creep so slowly that their bound is never positive.
+    # Pairs that move so slowly that their bound is never positive.
     is_faint = velocity.max(axis=0) < FAINT_VELOCITY
     while x.size:
         both_move = velocity.min(axis=0) > ROUNDING_ERROR
@@ -114,25 +114,28 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
 
     x and velocity (du/dt) have the left positions a in row 0 and the right ones b in row 1. Both
     positions and everything in their past must slide until the time, or a front has just arrived
-    there. The symbols and the two lower bounds are those of the module docstring.
+    there. c is the point from which waves arrive at a and b at this time. The module docstring
+    gives the lower bounds of w = exp(alpha t/2) du/dt between a and b that follow from w at a, b
+    and c, and explains F. F is half the integral of tau exp(alpha T/2) along the front t = T(x).
     """
     a, b = x
     curve, alpha = part.curve, part.alpha
     distance, middle = b - a, 0.5 * (a + b)
-    # The point c.
+    # The point c is in the middle between a and b.
     time_at_c = time - 0.5 * distance
     past_of_c = part.domains(middle, time_at_c)
     c_slides = curve.arrival(middle) < time_at_c
     k = past_of_c.stiffness
     a_begins, b_ends = curve.crossings(middle, time - a, time + b)
     past = PastOnCurve(a_begins, past_of_c.left, past_of_c.right, b_ends)
-    # w and F are divided by exp(alpha t/2) at the time of a and b, where w is then du/dt. At c,
-    # which is half of the distance earlier, w contains a smaller exponential.
+    # w and F are divided by exp(alpha t/2) at the time of a and b, so that w is du/dt there. At c,
+    # which is half of the distance earlier, w keeps an exponential factor.
     w_at_a, w_at_b = velocity
     w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
     half_exponential = 0.5 * np.exp(exponent)
-    # F loses by negative pre-stress and gains by positive one. These are densities along the curve.
+    # From c to a or b, F loses by negative pre-stress and gains by positive one. Densities are per
+    # unit of the parameter of the curve.
     loss_density = half_exponential * np.maximum(-curve.source, 0.0)
     if k > 0.0:
         gain_density = half_exponential * np.maximum(curve.source, 0.0)
@@ -142,8 +145,9 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     else:
         lower_bound = w_at_c - _integral_outside_past_of_c(loss_density, past)
     is_bound_positive = c_slides & (lower_bound > 0.0)
-    # If c has not slipped, all pre-stress in the past must be positive, and the largest argument of
-    # J0 before its first zero. This condition is sufficient also if c has slipped.
+    # If c has not slipped, w is an integral of tau times the Bessel function J0. It is positive if
+    # all pre-stress in the past is, and if the largest argument of J0, sqrt(k d_xi d_eta), is below
+    # its first zero. This condition is sufficient also if c has slipped.
     to_a_begins, to_b_ends = _integrals_from_left_end(loss_density, [a_begins, b_ends])
     is_past_positive = to_b_ends - to_a_begins <= 0.0
     d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)

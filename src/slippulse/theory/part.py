@@ -87,5 +87,5 @@ class Part:
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
         step = SEARCH_STEP * self.scale / self.refinement
-        search = StickSearch(self.velocity, step, until or self.until)
+        search = StickSearch(self.velocity, step, self.until if until is None else until)
         return search.find_stick_times(x, self.curve.arrival(x), arrivals)

@@ -207,10 +207,11 @@ class DependenceDomains:
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        They are the derivatives of the formula 2 du/dt = Int tau E K dx. With xi, three things
-        change: the left end x_l of the integral (where g = xi) by dx/dg, the kernel K by
-        k (eta - h) K', and the decay factor E by -alpha/4 E. With eta, the right end x_r (where
-        h = eta) changes by dx/dh, K by k (xi - g) K', and E by the same amount as with xi.
+        They are the derivatives of the formula 2 du/dt = Int tau E K dx over the front t = T(x),
+        from x_l to x_r. With g = T - x and h = T + x, the argument of the kernel K is
+        k (xi - g) (eta - h). So with xi, K changes by k (eta - h) K', the left end x_l (where
+        g = xi) by dx/dg, and the decay factor E by -alpha/4 E. With eta, K changes by
+        k (xi - g) K', the right end x_r (where h = eta) by dx/dh, and E by -alpha/4 E.
         """
         decay_left, decay_right = self._decay_at_ends()
         # E tau dx/dg at x_l, and E tau dx/dh at x_r.
@@ -222,14 +223,17 @@ class DependenceDomains:
             return -0.5 * at_left_end - by_decay, 0.5 * at_right_end - by_decay
         source, k = self.curve.source, self.stiffness
 
-        def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return tau K' (eta - h) dx/ds and tau K' (xi - g) dx/ds."""
+        def kernel_terms(nodes: PanelNodes) -> np.ndarray:
+            """Return tau K' (eta - h) and tau K' (xi - g), each times dx/ds, at nodes of the curve.
+
+            K' is the derivative of the kernel. The source is tau dx/ds.
+            """
             source_times_slope = nodes.kernel(1) * source[nodes.panels].ravel()
             return np.stack(
                 [source_times_slope * nodes.eta_minus_h, source_times_slope * nodes.xi_minus_g]
             )
 
-        by_kernel_with_xi, by_kernel_with_eta = self._integrate(integrand, component_shape=(2,))
+        by_kernel_with_xi, by_kernel_with_eta = self._integrate(kernel_terms, component_shape=(2,))
         by_xi = 0.5 * (k * by_kernel_with_xi - at_left_end) - by_decay
         by_eta = 0.5 * (k * by_kernel_with_eta + at_right_end) - by_decay
         return by_xi, by_eta
@@ -244,7 +248,7 @@ class DependenceDomains:
         """
         # dg/ds or dh/ds. The source is tau dx/ds, so that its quotient with dg/ds is tau dx/dg.
         slope = self.curve.evaluate(field, end.panel, end.s, order=1)
-        # Where this slope is 0, tau is 0 too. The huge divisor makes the quotient negligible.
+        # Where this slope is 0, tau is 0 too, and the quotient is set to about 0.
         slope = np.where(np.abs(slope) < 1e-300, 1e300, slope)
         return decay_at_end * self.curve.evaluate("source", end.panel, end.s) / slope
 
@@ -258,10 +262,12 @@ class DependenceDomains:
         """
         k, alpha = self.stiffness, self.alpha
 
-        def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return the braces {...} of the formula for the slip, with d/ds in place of d.
+        def braces(nodes: PanelNodes) -> np.ndarray:
+            """Return the integrand of the formula for the slip, at nodes of the curve:
 
-            s is the parameter of the curve.
+            -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh],
+
+            where d means d/ds, the derivative by the parameter of the curve.
             """
             p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
             kernel, kernel_slope = nodes.kernel(0), nodes.kernel(1)
@@ -271,7 +277,7 @@ class DependenceDomains:
             factor_of_slope -= nodes.xi_minus_g * (k * p * dh_ds)
             return kernel * factor_of_kernel + kernel_slope * factor_of_slope
 
-        return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(integrand)
+        return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(braces)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
         """Return the strain du/dx at the points (y, t), the derivative by y of the formula
@@ -288,30 +294,32 @@ class DependenceDomains:
         if k == alpha == 0.0:
             return strain
 
-        def integrand(nodes: PanelNodes) -> np.ndarray:
-            """Return the derivative by y of the braces {...} in the formula for the slip.
+        def derivative_of_braces(nodes: PanelNodes) -> np.ndarray:
+            """Return the derivative by y of the integrand of the formula for the slip:
 
-            They have d/ds in place of d, where s is the parameter of the curve.
+            -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh],
+
+            where d means d/ds, the derivative by the parameter of the curve.
             """
             p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
             kernel_slope, kernel_curvature = nodes.kernel(1), nodes.kernel(2)
-            # In the second term, K' changes.
+            # In the first term, K changes. alpha/2 p dx is alpha/4 p (dh - dg).
+            factor_of_kernel = -dp_dx * dt_ds - 0.25 * alpha * p * (dh_ds - dg_ds)
+            by_kernel = kernel_slope * (k * factor_of_kernel)
+            # In the second term, both K' and the square bracket change.
             p_times_bracket = nodes.eta_minus_h * (p * dg_ds) - nodes.xi_minus_g * (p * dh_ds)
             by_kernel_slope = k**2 * kernel_curvature * p_times_bracket
-            # In the first term, K changes. alpha/2 p dx is alpha/4 p (dh - dg).
-            minus_factor_of_kernel = dp_dx * dt_ds + 0.25 * alpha * p * (dh_ds - dg_ds)
-            by_kernel = kernel_slope * (k * minus_factor_of_kernel)
-            # In the second term, the square bracket changes, too.
             by_bracket = kernel_slope * (k * p * (dg_ds + dh_ds))
-            minus_change_of_z = nodes.eta_minus_h - nodes.xi_minus_g
-            return minus_change_of_z * (by_kernel - by_kernel_slope) + by_bracket
+            # The derivative by y of the argument z of the kernel, divided by k.
+            z_slope = nodes.xi_minus_g - nodes.eta_minus_h
+            return z_slope * (by_kernel + by_kernel_slope) + by_bracket
 
         # The ends of the integral move with y. At both of them K = 1 and K' = -1/4, because z = 0.
         p_left, p_right = self._decayed_at_ends(static_solution, 0)
         elapsed_left, elapsed_right = self._elapsed_at_ends()
         by_motion_of_ends = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
         strain += by_motion_of_ends - 0.25 * alpha * (p_right - p_left)
-        return strain + 0.5 * self._integrate(integrand)
+        return strain + 0.5 * self._integrate(derivative_of_braces)
 
     def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
         """Return p(y) - [E p(x_l) + E p(x_r)]/2, or the same of dp/dx (order 1), for all points.
@@ -355,9 +363,9 @@ class DependenceDomains:
     ) -> np.ndarray:
         """Return the integral of a function times the decay factor E over the domain of each point.
 
-        integrand returns the function at nodes of the curve, as a factor of ds, where s is the
-        parameter of the panels. It returns one function, or, if component_shape is (2,), two
-        functions. The result is [point] or [component, point].
+        The integral is over the parameter s of the panels. integrand returns the values of the
+        function at nodes of the curve. If component_shape is (2,), it returns those of two
+        functions, and the result has one row of integrals for each of them.
         """
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
@@ -416,7 +424,8 @@ class DependenceDomains:
         Then the integrand is the same for all points. Each integral is the integral from the left
         end of the curve to the right end of the domain, minus that to the left end of the domain.
         """
-        # The integrand does not depend on the first two fields, because K is constant.
+        # Where an integrand contains xi - g or eta - h, it has the factor k = 0. So any values of
+        # these two fields will do.
         unused, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
         nodes = PanelNodes(unused, unused, kernel=lambda order: 1.0, panels=all_panels)
         values = np.broadcast_to(integrand(nodes), (1, self.curve.x.size))
@@ -445,6 +454,7 @@ def _integrate_between(
     """Return the integral over s for each point: from first_s on a panel to last_s on another one.
 
     values : the integrand at the nodes of all panels, [..., point, panel, node]
+    first_panel, first_s, last_panel, last_s : one element for each point
     """
     # The sum over whole panels, from the first panel of a point to the one before its last.
     point, panel = np.arange(values.shape[-3]), np.arange(values.shape[-2])
@@ -478,10 +488,11 @@ def decay(alpha: float, xi_minus_g: np.ndarray, eta_minus_h: np.ndarray) -> np.n
 
 
 def kernel_function(stiffness: float, z: np.ndarray, z_at_ends: np.ndarray) -> Callable:
-    """Return a function of the order (0, 1, 2) that gives the kernel K, K' or K'' at z.
+    """Return a function of the order that gives the kernel K (order 0), K' (1) or K'' (2) at z.
 
-    z_at_ends are the values of z at the first and last nodes of each integral. If the stiffness is
-    not negative, only these can be negative at nodes that count. So they contain the lowest z.
+    z may also contain nodes that no integral uses. z_at_ends are the values on the first and the
+    last panel of each integral. If the stiffness is not negative, only these panels have nodes
+    that are used although z is negative. So the lowest z that is used is among these values.
     """
     if stiffness < 0.0:
         return partial(_bessel, z)
@@ -499,14 +510,14 @@ def _kernel_between(z: np.ndarray, lowest: float, highest: float, order: int) ->
         return np.full(z.shape, KERNEL_AT_ZERO[order])
     if max(-lower, upper) > MAX_POLYNOMIAL_ARGUMENT:
         return _bessel(np.clip(z, lower, upper), order)
-    # Bounds are rounded up to powers of two, so that a few polynomials serve all ranges. The
+    # Bounds are widened to powers of two, so that a few polynomials serve all ranges. The
     # variable of the polynomial is -1 at the lower bound and 1 at the upper bound.
-    lower, upper = _power_of_two(lower), _power_of_two(upper)
+    lower, upper = _next_power_of_two(lower), _next_power_of_two(upper)
     scaled = z - 0.5 * (lower + upper)
     scaled *= 2.0 / (upper - lower)
     scaled.clip(-1.0, 1.0, out=scaled)
     # Horner's rule, in place.
-    coefficients = _polynomial(lower, upper, order)
+    coefficients = _kernel_polynomial(lower, upper, order)
     value = coefficients[0] * scaled
     for coefficient in coefficients[1:-1]:
         value += coefficient
@@ -514,11 +525,8 @@ def _kernel_between(z: np.ndarray, lowest: float, highest: float, order: int) ->
     return value + coefficients[-1]
 
 
-def _power_of_two(bound: float) -> float:
-    """Return a bound rounded away from 0 to a power of two of a size of at least 1.
-
-    A bound of 0 remains 0.
-    """
+def _next_power_of_two(bound: float) -> float:
+    """Return a bound with its size rounded up to a power of two, at least 1; 0 remains 0."""
     if bound == 0.0:
         return 0.0
     exponent = max(0, math.ceil(math.log2(abs(bound))))
@@ -526,11 +534,11 @@ def _power_of_two(bound: float) -> float:
 
 
 @lru_cache(maxsize=256)
-def _polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
-    """Return the coefficients of the polynomial for the kernel K between bounds.
+def _kernel_polynomial(lower: float, upper: float, order: int) -> tuple[float, ...]:
+    """Return the coefficients of a polynomial that approximates K(z) for z between two bounds.
 
-    The highest power comes first. The variable of the polynomial is -1 at the lower bound and 1 at
-    the upper bound.
+    With order 1 or 2 it approximates K' or K''. The highest power comes first. The variable of the
+    polynomial is -1 at the lower bound and 1 at the upper bound.
     """
     # The degree 40 is sufficient for all bounds. Terms as small as rounding errors are dropped.
     points = chebyshev.chebpts1(41)

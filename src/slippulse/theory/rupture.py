@@ -169,11 +169,11 @@ class Rupture(ExplainsRemovedNames):
         end, reason = stretch.ends[side], str(stretch.end_reason[side])
         if reason != "duration" and end.time <= self._latest_time:
             return FrontEnd(float(end.x), float(min(end.time, self.duration)), reason)
-        # The curve t = T(x) of the fronts continues a little beyond the duration. On it, the front
-        # is searched beyond the last end of a panel that it has reached at the duration.
+        # The curve t = T(x) of the fronts continues a little beyond the duration. The front is
+        # searched beyond the outermost panel end (edge) that it has reached at the duration.
         curve = part.curve
-        reached_panel_ends = curve.edges[curve.edge_times <= self.duration]
-        outermost = reached_panel_ends[-1] if side == RIGHT else reached_panel_ends[0]
+        reached_edges = curve.edges[curve.edge_times <= self.duration]
+        outermost = reached_edges[-1] if side == RIGHT else reached_edges[0]
         return FrontEnd(curve.front_at(self.duration, outermost, side), self.duration, "duration")
 
     def release_time(self, x) -> np.ndarray:
@@ -201,13 +201,17 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        tuple of float, left and right
+        tuple of float, left and right; NaN for a front that was not followed up to this time
         """
         time = self._checked_time(time)
         check_number("x", x)
-        for part in self._parts:
+        for part, ends in zip(self._parts, self.front_ends, strict=True):
             if part.curve.arrival(x) <= time * (1.0 + EQUALITY_TOLERANCE):
-                return part.curve.front_at(time, x, LEFT), part.curve.front_at(time, x, RIGHT)
+                left, right = (part.curve.front_at(time, x, side) for side in (LEFT, RIGHT))
+                is_left_lost, is_right_lost = (
+                    end.reason not in ("stops", "duration") and end.time < time for end in ends
+                )
+                return np.nan if is_left_lost else left, np.nan if is_right_lost else right
         raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
@@ -268,7 +272,10 @@ class Rupture(ExplainsRemovedNames):
 
     @cached_property
     def first_stick(self) -> FirstStick | None:
-        """Time and position of the first sticking; None if nothing sticks before ``duration``."""
+        """Time and position of the first sticking; None if nothing is known to stick.
+
+        So it is None if nothing sticks before ``duration``, or not before ``limit``.
+        """
         first_of_parts = [part.first_stick() for part in self._solved_parts]
         # The earliest one. The result is None for a part in which nothing sticks.
         first = min(filter(None, first_of_parts), default=None)
@@ -284,7 +291,7 @@ class Rupture(ExplainsRemovedNames):
     def transition(self) -> ExactTransition:
         """T_trans and L_trans of the transition from crack to pulse, which is the first stick.
 
-        Both are NaN if nothing sticks before ``duration``.
+        Both are NaN if ``first_stick`` is None.
         """
         stick = self.first_stick
         if stick is None:
@@ -301,7 +308,7 @@ class Rupture(ExplainsRemovedNames):
 
         Returns
         -------
-        float, NaN before anything sticks
+        float, NaN before anything sticks, and where the front or the edge is not known
         """
         check_choice("side", side, ("right", "left"))
         time = self._checked_time(time)
@@ -322,10 +329,12 @@ class Rupture(ExplainsRemovedNames):
         """
 
         def time_until_stick(position: float) -> float:
-            """Return the stick time of a position, minus the time; negative if it has stuck."""
+            """Return the stick time of a position minus ``time``; negative if it has stuck."""
             stick = float(self._stick_time_beyond_end(np.array(position)))
-            # A position that never sticks counts as if it stuck after the end of the rupture.
-            return (2.0 * self.duration if np.isnan(stick) else stick) - time
+            if np.isnan(stick):
+                # The position never sticks. Any time after the end of the rupture stands for this.
+                stick = 2.0 * self.duration
+            return stick - time
 
         if time_until_stick(front) <= 0.0:
             return front

@@ -222,11 +222,11 @@ def _runs_back(x: np.ndarray) -> bool:
     x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
     """
     dx_ds = NODES_TO_DERIVATIVES @ x
-    # The sign of dx/ds is examined halfway between the start and the first stop of the front. It is
-    # the same on this whole way.
-    first_stop = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
-    halfway = 0.5 * (first_stop - 1.0)
-    return bool(legendre.legval(halfway, NODES_TO_SERIES @ dx_ds) < 0.0)
+    # From the start, s = -1, to the first root of dx/ds (or the end, s = 1) dx/ds has one sign. It
+    # is examined in the middle between them.
+    first_root = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
+    middle = 0.5 * (-1.0 + first_root)
+    return bool(legendre.legval(middle, NODES_TO_SERIES @ dx_ds) < 0.0)
 
 
 def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
@@ -259,8 +259,9 @@ class FreeBoundary:
         """Compute the quantities that do not depend on the unknown positions of the front.
 
         Each node of the chunk is an entry, and belongs to one integral over the curve, from this
-        entry to the front. d_xi, d_eta and the weights have one row for each integral, and one
-        column for each node of the curve from the panel of the entries on.
+        entry to the front. The weights, and d_xi, T - x at the entry minus T - x at a node of the
+        curve, have one row for each integral. They have one column for each node, from the panel of
+        the entries on.
         """
         curve, panel = front.curve, chunk.panel
         s = chunk.parameters()
@@ -309,8 +310,8 @@ class FreeBoundary:
         dx_ds = NODES_TO_DERIVATIVES @ x
         integrals = over_known + prestress_integral + integrate_kernel_minus_1 @ (tau * dx_ds)
         # The derivatives of all integrals (rows) by all positions (columns). A position changes
-        # dx/ds and tau at its node. It also changes the kernel of its own row, and that of the
-        # other rows at its node by the opposite amount.
+        # dx/ds and tau at its node. It also changes the kernel: in its own integral at all nodes,
+        # and in each other integral at its node, by the opposite amount.
         by_dx_ds = (integrate_kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
         by_tau = integrate_kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
         by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, known_count:] * (tau * dx_ds)
@@ -411,9 +412,11 @@ class SlowFront:
         the front stops or reaches the mark on it, the end of the chunk is moved to this event.
         """
         last_s = max(entry.s - next_length, -1.0)
+        # The chunk, and how often its end has been moved to an event.
         chunk, move_count = Chunk(entry.panel, entry.s, last_s), 0
         for _ in range(MAX_CHUNKS):
             if chunk.start - chunk.stop < MIN_CHUNK:
+                # The front can go on only if it is very close to the mark.
                 return self.straight_to_mark(mark)
             x = self.solve(chunk)
             if x is not None and _runs_back(x):
@@ -478,10 +481,12 @@ class SlowFront:
             skipped_motion = skipped.total_motion
             has_skipped = has_skipped or skipped.skips_any
             if skipped.skips_all:
+                # Go on from the right end of the next panel on the left.
                 entry = Entry(entry.panel - 1, 1.0)
             elif not has_skipped:
                 return Entry(int(entry.panel), skipped.last_s)
             elif not skipped.next_moves_on:
+                # The entries after the skipped ones would move the front back.
                 return NO_ENTRY
             else:
                 # The motion must be positive, since a motion of 0 means that nothing was skipped.
@@ -507,14 +512,14 @@ class SlowFront:
     def entries_to_skip(
         self, entry: Entry, skipped_motion: float, negligible: float
     ) -> SkippedEntries:
-        """Return the entries to skip on a panel, from a given one to the left.
+        """Return which entries are skipped on a panel, from a given one to the left.
 
-        Entries are skipped as long as all of them together move the front by no more than the
-        fraction ``negligible`` of the size of the rupture. skipped_motion is the motion by entries
-        on other panels that were skipped before.
+        A wave that entered the rupture at an entry later moves the front. Entries are skipped as
+        long as all of them together move it by no more than the fraction ``negligible`` of the size
+        of the rupture. skipped_motion is the motion by entries that were skipped on other panels.
         """
         # The entries are sampled from the given one (sample 0) to the left end of its panel, at
-        # s = -1. motions has the motion of the front by all entries up to each sample.
+        # s = -1. motions has the distance that the front moves by all entries up to each sample.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
         motions = skipped_motion + self.motion_by_entries(entry.panel, s)
         # Only entries in negative pre-stress can move the front back. On a panel with such entries
@@ -527,7 +532,7 @@ class SlowFront:
             # The sample before the first one whose motion is too large, but at least sample 0.
             last = max(0, int(np.argmin(is_negligible)) - 1)
         skips_all = last == s.size - 1
-        # The front moves on if the next sample has no smaller motion than the last skipped one.
+        # Beyond the skipped entries, the front moves on if the motion grows to the next sample.
         next_moves_on = True
         if is_negative and not skips_all:
             next_moves_on = bool(motions[last + 1] >= motions[last])
@@ -597,12 +602,12 @@ class SlowFront:
         return bool(right_time > left_time and np.sum(self.curve.source[panel]) < 0.0)
 
     def entry_behind_slow_front(self) -> Entry | None:
-        """Return the next entry if the last one is on a panel of the slow front itself.
+        """Return the point where the next wave that arrives at the front has entered the rupture.
 
-        The wave that arrives at the front now, and one that arrives slightly later, are traced back
-        to the curve. The later one enters on the panel of the next entries. The other one may still
-        enter on the panel before it. The result is None if the later one comes from beyond the end
-        of the curve.
+        This is used if the wave entered through an earlier part of the slow front itself. Two waves
+        are traced back from the front to the curve: the one that arrives now, and one that arrives
+        slightly later. Next entries are on the panel where the later wave has entered. None if it
+        comes from beyond the end of the curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))
@@ -612,8 +617,8 @@ class SlowFront:
             return None
         panel_now, panel = entries.panel.tolist()
         s_now, s_later = entries.s.tolist()
-        # If the wave enters next to the right end of the panel, the entry is moved to this end.
-        # Otherwise the entries in between would be lost, because of the delay.
+        # If the wave that arrives now entered close to the right end of this panel, the next entry
+        # is this end. The position of the later wave would leave out the entries in between.
         right_end = self.curve.panels[panel].end
         if abs(right_end.time - right_end.x - t_minus_x) < 10.0 * delay:
             return Entry(panel, s=1.0)
@@ -631,13 +636,15 @@ class SlowFront:
         series of the result does not fall below SERIES_TOLERANCE.
         """
         equation = FreeBoundary(self, chunk)
+        # The positions, and the largest change of them in the last step.
         x, change = self.first_guess(chunk), np.inf
         for _ in range(MAX_NEWTON_STEPS):
             step = equation.newton_step(x)
             if step is None:
                 return None
             x = x - step
-            # Both numbers are fractions of the size of the rupture.
+            # The change, and the last two coefficients of the Legendre series of the positions, are
+            # measured as fractions of the size of the rupture.
             previous_change = change
             change = float(np.max(np.abs(step))) / self.size
             last_coefficients = np.max(np.abs(NODES_TO_SERIES[-2:] @ x)) / self.size

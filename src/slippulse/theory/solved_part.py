@@ -49,8 +49,9 @@ class SolvedPart(PartWithEdge):
     def fill_fields(self, fields: dict, x: np.ndarray, index: np.ndarray, time: np.ndarray) -> None:
         """Write the values of fields at points into given arrays.
 
-        fields has the name and the array of each field. A point has the position x[i] and a time,
-        where i is its element of index. Only points that have been released in this part change.
+        fields has the name and the array of each field. The positions of the points are x[index],
+        and their times are ``time``. Values change only at points that have been released in this
+        part.
         """
         release, stick = self.curve.arrival(x), np.nan_to_num(self.stick_time(x), nan=np.inf)
         slides = (time > release[index]) & (time < stick[index])

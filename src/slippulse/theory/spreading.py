@@ -78,7 +78,8 @@ class Stretch:
         """
         if side not in self.curves:
             self.curves[side] = Curve(turned_to_right(side, self.panels))
-        # Mirroring exchanges left and right, and changes the sign of positions.
+        # Restarts are positions where a slow front became fast again. In the mirror image, those of
+        # right fronts become those of left fronts, and change their sign.
         left_restarts = [side * x for x in self.restarts[-side]]
         right_restarts = [side * x for x in self.restarts[side]]
         return self.curves[side].with_restarts((left_restarts, right_restarts))

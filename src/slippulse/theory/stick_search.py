@@ -181,11 +181,10 @@ class StickSearch:
         start, end = samples.time[rows, end_columns - 1], samples.time[rows, end_columns]
         at_start = samples.velocity[rows, end_columns - 1]
         at_end = samples.velocity[rows, end_columns]
-        # The velocity that is searched for.
+        # The search is for the time at which du/dt falls to this value.
         target = np.zeros(rows.size)
-        # A step that begins at the release has du/dt = 0 at its start, which is not the zero that
-        # is searched for. Such a step is shortened, and the search is for the time at which du/dt
-        # falls to QUIET_VELOCITY.
+        # At the start of a step that begins at the release, du/dt is 0, but the block does not
+        # stick there. Such a step is shortened, and its target is QUIET_VELOCITY.
         quiet = np.flatnonzero(at_start <= 0.0)
         shortened = self._shorten_steps(x[quiet], start[quiet], end[quiet])
         target[quiet] = QUIET_VELOCITY
@@ -219,10 +218,10 @@ class StickSearch:
         """
         duration = end - start
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
-        # The columns go back in time from the end of the step to its start. So this is the column
-        # of the last sample above QUIET_VELOCITY, and the column before has the next later sample.
-        # If there is none, it is column 0, the end of the step. The column before, -1, is then that
-        # next to the start.
+        # The columns go back in time: column 0 is the end of the step, and column -1 is next to its
+        # start. So this is the column of the latest sample above QUIET_VELOCITY, and the column
+        # before has the sample that follows it in time. If no sample is above, these are the
+        # columns 0 and -1.
         last_above = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
         columns = np.stack([last_above, last_above - 1], axis=1)
         rows = np.arange(x.size)[:, None]

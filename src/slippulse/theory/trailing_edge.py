@@ -299,9 +299,9 @@ class PartWithEdge(Part):
         self._mark_slow_intervals(refined, piece_starts)
         is_unresolved = ~knots.predicts_middle(halved, middle_knots)
         unresolved_halves = [knots.x[halved[is_unresolved]], middles[is_unresolved]]
-        k = np.searchsorted(refined.x, piece_starts.ravel())
-        has_event = refined.has_jump(k) | refined.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        pieces_with_event = piece_starts.ravel()[has_event]
+        pieces = np.searchsorted(refined.x, piece_starts.ravel())
+        reaches_end = refined.has_end_kinds(pieces, FASTER_THAN_WAVES, SLIDING)
+        pieces_with_event = piece_starts.ravel()[refined.has_jump(pieces) | reaches_end]
         return refined, np.concatenate([*unresolved_halves, pieces_with_event])
 
     def _intervals_to_divide(self, knots: Knots, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -334,25 +334,23 @@ class PartWithEdge(Part):
         is_kept = np.full(k.size, True)
         jumps = k[knots.has_jump(k)]
         for jump, before_jump in zip(jumps, knots.ends_before_jumps(jumps), strict=True):
-            # To arrive at a knot before it sticks, a wave must leave the knot before the jump no
-            # later than this. From there the edge runs to the jump in less time than a wave, which
-            # takes at most the length of the interval. A wave from the jump may have to run back by
-            # the same distance. So a knot is certainly in the future of the jump if this time is
-            # two lengths later than the stick before the jump.
-            travel_time = np.abs(knots.x - knots.x[before_jump])
-            latest_start = knots.stick - travel_time
+            # The edge runs from the knot before the jump to the jump faster than the waves, whose
+            # speed is 1. So the jump is later than this knot by less than the length of the
+            # interval, and a wave from the jump is back at the knot before two lengths have passed.
+            # It arrives at another knot after their distance at the latest.
             length = knots.x[jump + 1] - knots.x[jump]
-            is_outside = latest_start < knots.stick[before_jump] + 2.0 * length
+            distance = np.abs(knots.x - knots.x[before_jump])
+            is_outside = knots.stick - distance < knots.stick[before_jump] + 2.0 * length
             is_kept &= is_outside[k] | is_outside[k + 1]
         return k[is_kept]
 
     def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
-        """Set the kind SLOWER_THAN_WAVES in intervals where a slow edge looked like a jump.
+        """Change the kind of knots to SLOWER_THAN_WAVES where a slow edge looked like a jump.
 
-        Intervals with a jump were cut into pieces, and only one of them has the jump. If the edge
-        takes longer than a wave in every piece, it does not jump. It is slower than the waves,
-        although its slopes at the knots are just below 1. The kinds of all knots of such an
-        interval are changed in place.
+        An interval in which the edge takes longer than a wave seems to have a jump, and was cut
+        into pieces. A jump would be in only one of them. So if the edge takes longer than a wave in
+        every piece, it is slower than the waves, although its slopes at the knots are just below 1.
+        Then the kinds of all knots of the interval are changed in place.
 
         piece_starts has the left ends of the pieces of each interval, [piece, interval].
         """
@@ -426,8 +424,8 @@ class PartWithEdge(Part):
             # Both are 0 before the first step.
             velocity_before, step_before = velocity[missing], step[missing]
             velocity[missing] = self.velocity(x[missing], time[missing])
-            # The next steps use the change of velocity divided by the last step, unless this step
-            # was tiny.
+            # In the next steps the acceleration is replaced by the secant, the change of velocity
+            # divided by the last step, unless this step was tiny.
             secant = velocity_before - velocity[missing]
             secant /= np.where(step_before == 0.0, np.nan, step_before)
             has_secant = np.abs(step_before) > NEWTON_TOLERANCE
@@ -449,9 +447,8 @@ class PartWithEdge(Part):
     def slow_points(self) -> list[Point]:
         """Return the points where the trailing edge is not faster than the waves.
 
-        They are the knots just before a jump of the edge, and the knots of the kind
-        SLOWER_THAN_WAVES. A point where a front has stopped is one of them if the edge does not run
-        back from there faster than the waves.
+        They are the knots just before a jump of the edge, the knots of the kind SLOWER_THAN_WAVES,
+        and the points where a front has stopped and no fast edge begins.
         """
         knots = self.knots
         k = np.arange(knots.x.size - 1)
@@ -507,11 +504,11 @@ class PartWithEdge(Part):
         has_stuck = knots.kind != SLIDING
         if not has_stuck.any():
             return None
+        # The stick time of a knot may be later than computed, by its error. Of the knots that stick
+        # first, apart from errors and rounding, the one nearest to x = 0 is chosen.
         error = self._stick_time_errors()
-        # If several knots stick first, apart from errors and rounding, the one nearest to x = 0 is
-        # chosen.
-        latest = np.where(has_stuck, knots.stick + error, np.inf)
-        may_be_first = np.flatnonzero(latest <= np.min(latest) + 1e-10)
+        latest_stick = np.where(has_stuck, knots.stick + error, np.inf)
+        may_be_first = np.flatnonzero(latest_stick <= np.min(latest_stick) + 1e-10)
         nearest = int(may_be_first[np.argmin(np.abs(knots.x[may_be_first]))])
         first = FirstStick(float(knots.stick[nearest]), float(knots.x[nearest]))
         # In an interval nothing sticks before this time, since the edge is faster than the waves,

@@ -28,7 +28,7 @@ RED = "#c00000"
 HATCHED_LOOK: Look = {"facecolor": "0.87", "edgecolor": "0.45", "hatch": "////", "linewidth": 0.0}
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the displacement u_x as a function of the height y, and the width of the strip.
 
     The heights are in layer thicknesses: 0 at the bottom of the layer and 1 at its top.

@@ -62,7 +62,7 @@ LEVEL_COUNTS = {
 }
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of the study regime_plane, and runs of the sweeps with two more roles.
 
     symmetric : all runs with equal levels on both sides
@@ -115,9 +115,9 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def numbers_of_regimes(profiles: list[pd.DataFrame]) -> dict[tuple[str, str], str]:
-    """Return the number of each drawn profile, by its boundary and regime.
+    """Return the number of each drawn profile as a text, by its boundary and regime.
 
-    The number is written beside the profile, and beside the name of its regime in the plane.
+    The text is put in front of the name of the regime in the plane.
     """
     numbers = {}
     for number, rows in zip(NUMBERS, profiles, strict=False):
@@ -170,8 +170,9 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
     lines occur twice, as mirror images, and only those with the lower level on the left are
     labelled.
 
-    rows : corners of areas and ends of lines, in the columns left and right
-    numbers : the numbers from `numbers_of_regimes`
+    rows : corners of areas and ends of lines, in the columns left and right. The rows of one shape
+        have the same number in the column series
+    numbers : text before the label of some regimes, by boundary and regime
     """
     look: Look = {"ha": "center", "va": "center", "linespacing": 1.0, "zorder": 4.0}
     for _, shape in rows.groupby("series", sort=False):
@@ -186,13 +187,15 @@ def draw_plane(axes: Axes, rows: pd.DataFrame, numbers: dict[tuple, str]) -> Non
         else:
             axes.add_patch(Polygon(corners, facecolor=tint(colour), gid=regime))
         is_quadrant = role == "area" and len(corners) == 4
+        is_labelled_image = centre_left < centre_right
         if is_quadrant:
             # In the upper quadrants, the label leaves room for that of a narrow area below it.
             height = centre_right + 0.1 if centre_right > 0.0 else centre_right
             axes.text(centre_left, height, text, **look)
-        elif centre_left < centre_right and role == "line":
+        elif is_labelled_image and role == "line":
+            # This line is the left half of the horizontal axis.
             axes.text(centre_left, -0.1, text, **look)
-        elif centre_left < centre_right:
+        elif is_labelled_image:
             # The label of a narrow area stands outside, with a line that points to the area.
             pointer = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0.0, "shrinkB": 0.0}
             axes.annotate(text, (-0.75, 0.04), (-0.6, 0.19), arrowprops=pointer, **look)

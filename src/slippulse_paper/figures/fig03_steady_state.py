@@ -27,7 +27,7 @@ DRAWS = {
 }
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return `pulse_table` for both sweeps, without slip and acceleration."""
     return pulse_table(data, tables, settings).drop(columns=["slip", "slip_acceleration"])
 

@@ -46,13 +46,13 @@ class RuptureExtent(NamedTuple):
     length: float
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of `space_time.run_table` for the first run of each sweep, and more roles.
 
     exact_front, exact_trailing : front and trailing edge of the exact solution
-    measured, paper, last_release : the transition as measured and by the paper's estimate, and the
-        last release of the left front (see `rupture_extents`). Each has one row for each front,
-        with its position and the time. The value is the distance between both fronts
+    measured, paper, last_release : the measured transition, the paper's estimate of it, and the
+        last release of the left front. Each has one row for each front, with its position and the
+        time. The column value has the distance between both fronts
     fraction : under a stress boundary, the transition is when the left front has covered this
         fraction of its way to the balance position x_minus
     """
@@ -108,44 +108,48 @@ def draw(table: pd.DataFrame) -> Figure:
     sides = figure.subfigures(1, 2, squeeze=False, wspace=0.03).flat
     for side, (panel, letter) in zip(sides, PANELS.items(), strict=True):
         profile, axes = side.subplots(1, 2, sharey=True, width_ratios=(0.28, 1.0))
-        roles = style.by_role(table[table["panel"] == panel])
-        space_time.draw_profile(profile, roles)
-        space_time.draw_map(axes, roles)
-        draw_transition(axes, roles)
+        rows_by_role = style.by_role(table[table["panel"] == panel])
+        space_time.draw_profile(profile, rows_by_role)
+        space_time.draw_map(axes, rows_by_role)
+        draw_transition(axes, rows_by_role)
         style.panel_letter(profile, letter)
         transition = "first stick"
-        if "fraction" in roles:
-            percent = 100.0 * roles["fraction"]["value"].iloc[0]
+        if "fraction" in rows_by_role:
+            percent = 100.0 * rows_by_role["fraction"]["value"].iloc[0]
             transition = rf"left front at {percent:g} % of its way to $x_-$"
         definition = rf"$T_\text{{trans}}$: {transition}"
-        side.suptitle(f"{space_time.run_title(roles)}\n{definition}")
+        side.suptitle(f"{space_time.run_title(rows_by_role)}\n{definition}")
     # The legend has an entry for everything that either panel shows.
     handles = style.legend_handles(figure.axes)
     style.legend_below(figure, handles, len(handles))
     return figure
 
 
-def draw_transition(axes: Axes, roles: dict[str, pd.DataFrame]) -> None:
-    """Mark the transition: measured, by the paper's estimate, and the last release of a front.
+def draw_transition(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
+    """Mark the measured transition, the paper's estimate of it, and the last release on the left.
 
     The exact front and trailing edge are drawn as well.
+
+    rows_by_role : rows of the table of the figure, by their role
     """
     look: Look = {"color": PURPLE, "linestyle": (0, (2, 2)), "linewidth": 1.6, "zorder": 2.5}
     for role, label in (("exact_front", "exact"), ("exact_trailing", None)):
-        if role in roles:
-            axes.plot(roles[role]["time"], roles[role]["position"], label=label, **look)
-    left_front = roles["measured"].iloc[0]
+        if role in rows_by_role:
+            axes.plot(
+                rows_by_role[role]["time"], rows_by_role[role]["position"], label=label, **look
+            )
+    left_front = rows_by_role["measured"].iloc[0]
     time, left, length = left_front[["time", "position", "value"]]
     # A run that ends before its transition has no arrows.
     if np.isfinite(time):
         draw_arrows(axes, RuptureExtent(time, left, length))
-    paper = roles["paper"]
+    paper = rows_by_role["paper"]
     look = MARK_LOOK | {"color": ORANGE, "label": "paper's estimate"}
     axes.plot(paper["time"], paper["position"], "D", **look)
-    if "last_release" in roles:
+    if "last_release" in rows_by_role:
         # Under a stress boundary, the paper's estimate of the transition time is |x_minus|.
         x_minus = -float(paper["time"].iloc[0])
-        draw_last_release(axes, roles["last_release"].iloc[:1], x_minus)
+        draw_last_release(axes, rows_by_role["last_release"].iloc[:1], x_minus)
 
 
 def draw_last_release(axes: Axes, left_front: pd.DataFrame, x_minus: float) -> None:

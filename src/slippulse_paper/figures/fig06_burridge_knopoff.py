@@ -57,7 +57,7 @@ TITLES = {
 }
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return one row for each panel, instant and block of the first run of each sweep.
 
     The column x has the position of a block before it slips. The column scale has the factor by
@@ -68,6 +68,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         run = point(data[f"burridge_knopoff_{name}"], 0)
         rows = block_states(run)
         rows["scale"] = displacement_scale(rows)
+        # Only under a stress boundary, a block stops the left front.
         rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
         parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
         panels.append(rows.assign(panel=name, **parameters))
@@ -97,17 +98,20 @@ def block_states(run: xr.Dataset) -> pd.DataFrame:
 
 
 def displacement_scale(rows: pd.DataFrame) -> float:
-    """Return the factor by which slip is multiplied in the drawing, in spacings.
+    """Return the factor that converts slip to the displacement of a drawn block, in block spacings.
 
     It is the largest factor that keeps each block within MAX_DRAWN_DISPLACEMENT of its position at
     rest, and each spring longer than MIN_DRAWN_SPRING times its length at rest.
+
+    rows : blocks at each instant (column row), from left to right
     """
+    largest_for_blocks = MAX_DRAWN_DISPLACEMENT / rows["slip"].max()
     # Two neighbouring blocks come closer if the left one slips more than the right one.
     slip_difference = rows.groupby("row")["slip"].diff()
     largest_approach = float(-slip_difference.min())
     length_at_rest = 1.0 - BLOCK_WIDTH
     largest_for_springs = (1.0 - MIN_DRAWN_SPRING) * length_at_rest / largest_approach
-    return min(MAX_DRAWN_DISPLACEMENT / rows["slip"].max(), largest_for_springs)
+    return min(largest_for_blocks, largest_for_springs)
 
 
 def arresting_block(run: xr.Dataset) -> float:
@@ -161,7 +165,8 @@ def instants(run: xr.Dataset) -> list[tuple[str, int]]:
 def rupture_name(x: np.ndarray, velocity: np.ndarray, is_stuck: np.ndarray) -> str:
     """Return "crack", "two pulses", "pulse" or "arrested" for the blocks at one instant.
 
-    x, velocity, is_stuck : position, slip velocity, and whether a block has stuck after sliding
+    x, velocity, is_stuck : position of each block, its slip velocity, and whether it has stuck
+        after sliding
     """
     centre_has_stuck = is_stuck[x == 0.0].all()
     if not centre_has_stuck:
@@ -169,7 +174,9 @@ def rupture_name(x: np.ndarray, velocity: np.ndarray, is_stuck: np.ndarray) -> s
     # A pulse runs on each side on which blocks slide.
     left_slides = (velocity[x < 0.0] > 0.0).any()
     right_slides = (velocity[x > 0.0] > 0.0).any()
-    return ("arrested", "pulse", "two pulses")[int(left_slides) + int(right_slides)]
+    if left_slides and right_slides:
+        return "two pulses"
+    return "pulse" if left_slides or right_slides else "arrested"
 
 
 def draw(table: pd.DataFrame) -> Figure:

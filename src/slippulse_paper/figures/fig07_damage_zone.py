@@ -73,6 +73,7 @@ def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     axes.fill_betweenx(after["y"], x_before, x_after, color=BLUE, alpha=0.18, linewidth=0.0)
     slip = float(after["displacement"].iloc[0] - before["displacement"].iloc[0])
     imposed = float(after["displacement"].iloc[-1])
+    # An arrow below the layers shows the slip, and one above them the imposed displacement.
     arrow(axes, (ZERO_DISPLACEMENT, -0.14), (ZERO_DISPLACEMENT + slip, -0.14), ORANGE)
     arrow(axes, (ZERO_DISPLACEMENT, top + 0.14), (ZERO_DISPLACEMENT + imposed, top + 0.14), BLACK)
     draw_dimensions(axes, top)

@@ -79,6 +79,7 @@ def _draw_first_frame(figure: Figure, run: xr.Dataset, layer: Layer | None) -> l
         (line,) = axes.plot(x, values[0], color=colour)
         axes.set(ylabel=_with_unit(label, unit), ylim=(-0.04 * largest, 1.05 * largest))
         curves.append(Curve(line, values))
+    # The range is not converted to SI units. Its outermost samples, which are, stand in for it.
     limits = (lower, upper) if layer is None else (x[0], x[-1])
     panels[-1].set(xlim=limits, xlabel=_with_unit(r"position $x$", unit_of_x))
     return curves

@@ -81,13 +81,16 @@ def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
     """Return the largest slip and slip velocity of the exact steady pulse on each side.
 
     Each is drawn as a horizontal line from x = 0 to the column position, which is the end of the
-    drawn range on the side of the pulse. Sides without a pulse or without theory have no rows.
+    drawn range on the side of the pulse. There are no rows for sides without a pulse at the end or
+    without theory.
 
     theory : measured and predicted numbers of the run
     """
     lower, upper = space_time.drawn_range(run)
-    # Only the pulse on the right is measured. On the left there is a pulse if any block has stuck.
-    has_left_pulse = math.isfinite(run.attrs["first_stick_time"])
+    # Only the pulse on the right is measured. On the left there is a pulse if some block has stuck,
+    # and if some blocks on the left still slide at the end.
+    slides_on_left = (run["slip_velocity"].values[run["x"].values < 0.0] > 0.0).any()
+    has_left_pulse = math.isfinite(run.attrs["first_stick_time"]) and slides_on_left
     has_right_pulse = theory["pulse_state"] not in ("none", "stopped")
     rows = []
     for field, column in LARGEST_VALUE_COLUMNS.items():
@@ -101,10 +104,13 @@ def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw in three rows the space-time map, slip velocity and slip at the end, and the numbers."""
-    roles = by_role(table)
+    rows_by_role = by_role(table)
     # A run may have neither numbers nor exact steady pulses.
     no_rows = table.iloc[:0]
-    numbers, steady_pulses = roles.get("number", no_rows), roles.get("steady", no_rows)
+    numbers, steady_pulses = (
+        rows_by_role.get("number", no_rows),
+        rows_by_role.get("steady", no_rows),
+    )
     # Numbers are written in two columns.
     line_count = math.ceil(len(numbers) / 2)
     text_height = 0.16 * line_count
@@ -112,29 +118,29 @@ def draw(table: pd.DataFrame) -> Figure:
     heights = (3.1, 1.6, 0.2 + text_height)
     upper, middle, lower = figure.subfigures(3, 1, squeeze=False, height_ratios=heights).flat
     prestress_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
-    space_time.draw_profile(prestress_axes, roles)
-    space_time.draw_map(map_axes, roles)
+    space_time.draw_profile(prestress_axes, rows_by_role)
+    space_time.draw_map(map_axes, rows_by_role)
     map_axes.legend(loc="upper left")
     panel_letter(prestress_axes, "a")
     # A dollar sign in the title is a character, and does not begin a formula.
-    title = str(roles["title"]["series"].iloc[0]).replace("$", r"\$")
-    upper.suptitle(f"{title}\n{space_time.run_title(roles)}")
+    title = str(rows_by_role["title"]["series"].iloc[0]).replace("$", r"\$")
+    upper.suptitle(f"{title}\n{space_time.run_title(rows_by_role)}")
     for axes, letter, field in zip(middle.subplots(1, 2), "bc", FIELDS, strict=True):
-        draw_field(axes, roles, field, steady_pulses[steady_pulses["series"] == field])
+        draw_field(axes, rows_by_role, field, steady_pulses[steady_pulses["series"] == field])
         panel_letter(axes, letter)
     write_numbers(lower, numbers, line_count)
     return figure
 
 
 def draw_field(
-    axes: Axes, roles: dict[str, pd.DataFrame], field: str, steady_pulses: pd.DataFrame
+    axes: Axes, rows_by_role: dict[str, pd.DataFrame], field: str, steady_pulses: pd.DataFrame
 ) -> None:
     """Draw a field at the end, and as dashed lines its largest values in exact steady pulses.
 
     field : "slip_velocity" or "slip"
     steady_pulses : the rows of `steady_rows` for this field
     """
-    rows = roles["profile"][roles["profile"]["series"] == field]
+    rows = rows_by_role["profile"][rows_by_role["profile"]["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     handles = axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
     look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
@@ -144,10 +150,10 @@ def draw_field(
     # panels, and has one entry for all steady pulses.
     if len(handles) > 1 and field == "slip_velocity":
         axes.legend(handles=handles[:2], loc="center")
-    axes.set_xlabel(with_unit(r"position $x$", roles, "position"))
+    axes.set_xlabel(with_unit(r"position $x$", rows_by_role, "position"))
     # A label with a unit needs a second line, since the panel is low.
-    separator = "\n" if "unit" in roles else " "
-    axes.set_ylabel(with_unit(FIELDS[field], roles, field) + separator + "at the end")
+    separator = "\n" if "unit" in rows_by_role else " "
+    axes.set_ylabel(with_unit(FIELDS[field], rows_by_role, field) + separator + "at the end")
     axes.set_xlim(rows["position"].min(), rows["position"].max())
 
 

@@ -23,7 +23,7 @@ from .shared.error_panels import draw_errors, error_rows
 NEEDS = {"studies": ["accuracy_cost"]}
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of two parts of the figure, which the column part names.
 
     trade : errors as functions of work, in the form that `error_rows` returns

@@ -36,7 +36,7 @@ PATH_POINTS = 150
 SIMULATION_LOOK: Look = {"linewidth": 3.0, "alpha": 0.35}
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
     run : one row for each run, with the time of the last release on the left (last_release), and
@@ -77,29 +77,29 @@ def lattice_path(run: AnyRun, balance_distance: float) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) the distance still to go as a function of time, (b) two times of the left front.
+    """Draw (a) the distance still to go as a function of time, (b) two times by block spacing.
 
-    These are the times of its last release and of the stated fraction of its path, as functions of
-    the spacing.
+    One time is that of the last release on the left. At the other, the left front has covered the
+    stated fraction of its path.
     """
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE_WIDTH, 3.1, "ab")
     end = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The colour scale is logarithmic and has no colour for 0.
         colour: Colour = style.colour("damping_ratio", ratio) if ratio > 0.0 else ORANGE
-        roles = style.by_role(rows)
-        draw_path(path_axes, roles["path"], roles["exact_path"], end, colour)
+        rows_by_role = style.by_role(rows)
+        draw_path(path_axes, rows_by_role["path"], rows_by_role["exact_path"], end, colour)
         # A marker stands at the end of the path on the lattice.
-        last = roles["path"].iloc[-1]
+        last = rows_by_role["path"].iloc[-1]
         label = f"$b$ = {ratio:g}"
         path_axes.plot(last["time"], last["to_go"], marker, label=label, color=colour)
-        draw_times(spacing_axes, roles["run"].sort_values("dx"), marker, colour)
+        draw_times(spacing_axes, rows_by_role["run"].sort_values("dx"), marker, colour)
     fraction = table["fraction"].max()
     style.legend_below(figure, [*style.legend_handles([path_axes]), *legend_entries(fraction)], 5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     # All runs have the same pre-stress.
     parameters = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]
-    scene = style.conditions(False, **parameters)
+    scene = style.conditions(held=False, **parameters)
     path_axes.set(ylabel=r"still to go, $1-|x|/|x_{-}|$", title=scene)
     spacing_axes.set(xscale="log", xlabel=r"spacing $\Delta x$", ylabel=r"time $t\,/\,|x_{-}|$")
     style.few_ticks(spacing_axes.xaxis, np.unique(table["dx"].dropna()))

@@ -36,7 +36,7 @@ CURVE_GAMMA = 0.65
 CURVE_LEVELS = (0.2, 0.5, 0.8)
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column part names.
 
     depth : depths on lattices (column measured) and exact ones, as in the study
@@ -48,28 +48,27 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     parts = [study[study["part"] == "depth"]]
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
-        fine = _interpolated(rows, levels, gamma=1.0, powers={"exact": 0.5})
+        fine = _interpolate_depths(rows, levels, gamma=1.0, powers={"exact": 0.5})
         # Exact depths are proportional to gamma^(-1/2), and the estimate to gamma^(-1).
         powers = {"exact": 0.5, "paper": 1.0}
-        curve = _interpolated(rows, np.array(CURVE_LEVELS), gamma=CURVE_GAMMA, powers=powers)
+        curve = _interpolate_depths(rows, np.array(CURVE_LEVELS), gamma=CURVE_GAMMA, powers=powers)
         parts.append(fine.assign(part="fine", damping_ratio=ratio))
         parts.append(curve.assign(part="curve", damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
 
 
-def _interpolated(
+def _interpolate_depths(
     rows: pd.DataFrame, levels: np.ndarray, gamma: float, powers: dict[str, float]
 ) -> pd.DataFrame:
     """Interpolate depths between the levels tau_0 and the barriers tau_b of the study.
 
-    The result has one row for each pair of one of ``levels`` and one of MAP_POINTS barriers, which
-    are evenly spaced in the logarithm.
+    The result has one row for each level in ``levels`` and each of MAP_POINTS barriers, which are
+    evenly spaced in the logarithm.
 
     rows : depths of the study at gamma = 1
-    levels : levels tau_0 before the barrier, for the result
-    gamma : the gamma to which depths are scaled
-    powers : columns of depths that are interpolated; a depth with the power p is proportional to
-        gamma^(-p)
+    levels : levels tau_0 of the result
+    gamma : the gamma to which the depths of the result are scaled
+    powers : names of the columns with depths. Depths are proportional to gamma^(-power)
     """
     # The logarithm of the depth is nearly linear in tau_0 and in log |tau_b|.
     study_levels = np.sort(rows["tau0"].unique())
@@ -100,14 +99,14 @@ def draw(table: pd.DataFrame) -> Figure:
         exact_depths = fine[fine["damping_ratio"] == ratio]
         lattice_depths = finest[finest["damping_ratio"] == ratio]
         image = _draw_map(axes, exact_depths, lattice_depths, depth_range)
-        axes.set_title(conditions(True, damping_ratio=ratio))
+        axes.set_title(conditions(held=True, damping_ratio=ratio))
     bar = figure.colorbar(image, ax=map_panels, aspect=25, pad=0.02)
     bar.set_label(r"exact depth $\times\ \gamma^{1/2}$")
     few_ticks(bar.ax.yaxis, CONTOUR_DEPTHS)
     largest_ratio = ratios[-1]
     curves = table[(table["part"] == "curve") & (table["damping_ratio"] == largest_ratio)]
     _draw_curves(curve_axes, curves, finest[finest["damping_ratio"] == largest_ratio])
-    curve_axes.set_title(conditions(True, damping_ratio=largest_ratio))
+    curve_axes.set_title(conditions(held=True, damping_ratio=largest_ratio))
     _draw_convergence(convergence_axes, runs)
     return figure
 

@@ -92,7 +92,7 @@ def _scene_entries(scenes: pd.DataFrame) -> list[Line2D]:
         parameters = {"gamma": scene.gamma} if has_springs else {}
         left, right = setting(scene.left), setting(scene.right)
         levels = left if left == right else f"{left}, {right}"
-        label = rf"{style.conditions(has_springs, **parameters)}, $\tau_0$ = {levels}"
+        label = rf"{style.conditions(held=has_springs, **parameters)}, $\tau_0$ = {levels}"
         entries.append(style.entry(label, color=SCENE_COLOURS[str(scene.scene)]))
     return entries
 

@@ -29,7 +29,7 @@ REFERENCE_LOOKS = {"exact": ("from exact theory", "-"), "paper": ("from the pape
 QUANTITY_LOOKS = {"time": ("v", BLACK), "length": ("P", GREY)}
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
     sweep : the runs of figure 5
@@ -56,12 +56,12 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw (a, b) error distributions, (c) refined lattices, (d) the exact transition time."""
     figure, panels = style.new_panels(PAGE_WIDTH, 5.0, "ab;cd")
     time_axes, length_axes, refined_axes, gaussian_axes = panels
-    roles = style.by_role(table)
-    draw_distributions(time_axes, roles["sweep"], "time")
-    draw_distributions(length_axes, roles["sweep"], "length")
-    draw_refinement(refined_axes, roles["refinement"])
+    rows_by_role = style.by_role(table)
+    draw_distributions(time_axes, rows_by_role["sweep"], "time")
+    draw_distributions(length_axes, rows_by_role["sweep"], "length")
+    draw_refinement(refined_axes, rows_by_role["refinement"])
     style.legend_above(figure, time_axes)
-    draw_exact_times(gaussian_axes, roles["gaussian"])
+    draw_exact_times(gaussian_axes, rows_by_role["gaussian"])
     return figure
 
 

@@ -26,14 +26,14 @@ LEVEL_COLOURS = (SKY, BLUE)
 def draw(table: pd.DataFrame) -> Figure:
     """Draw regimes of (a) bounded rate laws and (b, c) slip weakening, and (d) front speeds."""
     figure, (*planes, speed_axes) = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
-    roles = style.by_role(table)
-    runs = roles["plane"]
+    rows_by_role = style.by_role(table)
+    runs = rows_by_role["plane"]
     for axes, (laws, (label, title)) in zip(planes, PANEL_LAWS.items(), strict=True):
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title)
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
-    draw_speeds(speed_axes, roles["selection"])
+    draw_speeds(speed_axes, rows_by_role["selection"])
     handles = style.legend_handles(planes)
     style.legend_below(figure, handles, len(handles))
     return figure

@@ -42,23 +42,25 @@ COLUMNS = ["panel", "release", "left", "gamma", "beta", "damping_ratio", "dx"]
 COLUMNS += ["springs", "held", "fixed"]
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the exact lines of the study front_law (role theory) and runs (role simulation).
 
-    The column panel names the panel of a row: prestress, springs or refined. A run has its measured
-    speed, its theoretical speed (theory), and the speed without damping (undamped). The column
-    sound is True if the theory should hold for a run.
+    The column panel names the panel of a row: prestress, springs or refined. Its value limit marks
+    exact limits dx -> 0, which are not drawn. A run has its measured speed, its theoretical speed
+    (theory), and the speed without damping (undamped). The column sound is True if the theory
+    should hold for a run.
     """
     lines = tables["front_law"].assign(role="theory")
     runs = pd.concat(
         [uniform_runs(tables), spring_runs(tables, lines), refined_runs(tables, lines)]
     )
-    # The theory of fronts with leaf springs needs a steady and wide pulse.
+    # The theory of fronts with leaf springs needs a steady and wide pulse. Without leaf springs
+    # there is no pulse.
     is_steady = runs["pulse_state"] == "steady"
     is_wide = runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
     has_springs = runs["panel"] != "prestress"
-    # This theory gives the lattice_front_speed. Where it has no speed, because leaf springs are
-    # absent or hardly matter, the exact theory without leaf springs is used.
+    # The columns lattice_front_speed are from the theory with leaf springs. Where it has no speed,
+    # because leaf springs are absent or hardly matter, the exact theory without them is used.
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
     rows = runs[COLUMNS].assign(
         role="simulation",
@@ -71,24 +73,25 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     return pd.concat([rows, lines], ignore_index=True)
 
 
-def uniform_runs(tables: dict) -> pd.DataFrame:
+def uniform_runs(tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """Return the runs without leaf springs, for both release rules."""
     runs = pd.concat([tables["front_speed"], tables["front_speed_slow"]])
     return runs.assign(panel="prestress")
 
 
-def spring_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs with leaf springs that have the release rule of the lines.
+def spring_runs(tables: dict[str, pd.DataFrame], lines: pd.DataFrame) -> pd.DataFrame:
+    """Return the runs with leaf springs that have the release rule of the theoretical lines.
 
     The column springs has gamma dx^2, the dimensionless stiffness of the leaf springs.
     """
     runs = tables["front_speed_springs"]
+    # All lines of this panel have one release rule.
     release = lines.loc[lines["panel"] == "springs", "release"].iloc[0]
     runs = runs[runs["release"] == release]
     return runs.assign(panel="springs", springs=runs["gamma"] * runs["dx"] ** 2)
 
 
-def refined_runs(tables: dict, lines: pd.DataFrame) -> pd.DataFrame:
+def refined_runs(tables: dict[str, pd.DataFrame], lines: pd.DataFrame) -> pd.DataFrame:
     """Return the runs on refined lattices that belong to a theoretical line.
 
     As dx falls along a line, either beta or b = beta/dx is kept fixed. The column held has the name
@@ -122,10 +125,7 @@ def draw(table: pd.DataFrame) -> Figure:
     elastic_axes.set_ylim(0.98, 1.45)
     _draw_strong_damping(elastic_axes)
     _draw_springs(spring_axes, rows_by_panel["springs"])
-    # As dx -> 0 at fixed beta, the speed tends to a limit that hardly depends on beta. The largest
-    # one is drawn.
-    limit_at_fixed_beta = float(rows_by_panel["limit"]["speed"].max())
-    _draw_refined(refined_axes, rows_by_panel["refined"], limit_at_fixed_beta)
+    _draw_refined(refined_axes, rows_by_panel["refined"])
     style.legend_above(figure, total_axes, title="damping ratio $b$")
     return figure
 
@@ -143,11 +143,14 @@ def _draw_uniform(axes: Axes, rows: pd.DataFrame) -> None:
 
 
 def _draw_strong_damping(axes: Axes) -> None:
-    """Draw the limit b -> infinity under the elastic rule, where v = 1/sqrt(1 - tau_0)."""
+    """Draw the limit of strong damping (b -> infinity) under the elastic release rule.
+
+    In this limit the front speed v is 1/sqrt(1 - tau_0).
+    """
     tau0 = np.linspace(0.0, 1.0, 101)
-    label = r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
-    # The vertical axis shows v sqrt(1 - tau_0^2), which simplifies to this.
+    # The vertical axis shows v sqrt(1 - tau_0^2), which is sqrt(1 + tau_0) in this limit.
     scaled_speed = np.sqrt(1.0 + tau0)
+    label = r"$v=1/\sqrt{1-\tau_0}$, $b\to\infty$"
     limit = axes.plot(tau0, scaled_speed, ":", color=BLACK, label=label)
     axes.legend(handles=limit, loc="upper left")
 
@@ -180,13 +183,12 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.56))
 
 
-def _draw_refined(axes: Axes, rows: pd.DataFrame, limit_at_fixed_beta: float) -> None:
-    """Draw front speeds as functions of the spacing, and two limits as horizontal lines.
+def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
+    """Draw front speeds as functions of the spacing, and two formulas as horizontal lines.
 
     Along a line, either beta or b = beta/dx is fixed: its name is in the column held, and its value
-    in the column fixed. One of the limits is the speed without damping.
-
-    limit_at_fixed_beta : the other limit, the exact speed as dx -> 0 under the elastic release rule
+    in the column fixed. The formulas are the speeds without damping and with strong damping (see
+    `_draw_strong_damping`). At fixed beta, the damping becomes strong as dx falls.
     """
     symbols = {"b": "b", "beta": r"\beta"}
     lines = rows.groupby(["held", "fixed", "release"])
@@ -197,12 +199,13 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame, limit_at_fixed_beta: float) ->
         axes.plot(line["dx"], line["speed"], **look)
         _mark_runs(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=label, **look)
+    tau0 = float(rows["left"].iloc[0])
     undamped = rows["undamped"].max()
-    _mark_speed(axes, limit_at_fixed_beta, r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
+    _mark_speed(axes, 1.0 / np.sqrt(1.0 - tau0), r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
     _mark_speed(axes, undamped, r"$1/\sqrt{1-\tau_0^2}$", "--", "top")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
-    title = rf"$\Gamma = 1$, refining, $\tau_0 = {rows['left'].iloc[0]:g}$"
+    title = rf"$\Gamma = 1$, refining, $\tau_0 = {tau0:g}$"
     axes.set(ylim=(0.88 * undamped, None), title=title)
     axes.legend(loc="upper right")
 

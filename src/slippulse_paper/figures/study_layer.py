@@ -53,7 +53,7 @@ OUTCOMES: dict[str, Look] = {
 }
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of five parts of the figure, which the column part names.
 
     field : velocity in the layer at one time
@@ -80,10 +80,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
     """Return the pulses of one part on their finest grids, with the range over all grids.
 
-    A station is a position on the fault at which a pulse is measured. The last one counts. Columns
-    least_QUANTITY and largest_QUANTITY have the range. The column crossings has the sliding time
-    divided by the crossing time. This is the time from the tip of a rupture to the shear front that
-    comes down from the top of the layer behind it.
+    A pulse is measured where it passes stations on the fault. The last station counts. The columns
+    least_QUANTITY and largest_QUANTITY have the range. The column crossings has the time during
+    which a point of the fault slides, divided by the time from the tip of the rupture to the shear
+    front that comes down from the top of the layer behind it.
 
     rows : rows of the part, for all grids and stations
     """
@@ -91,7 +91,8 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
     by_pulse = at_last_station.sort_values("cells").groupby(PULSE_COLUMNS)
     # The grid with the most cells is the last one.
     finest = by_pulse.nth(-1).set_index(PULSE_COLUMNS, drop=False)
-    # A width is a time multiplied by the speed of the tip, so that both ratios are equal.
+    # A width is a time multiplied by the speed of the tip, so the ratio of two widths is that of
+    # the times.
     crossing_width = _crossing_width(finest["gamma"], finest["speed"])
     finest["crossings"] = finest["pulse_width"] / crossing_width
     drawn = finest[["part", *QUANTITIES, "cells", "crossings", *THEORY_COLUMNS]]
@@ -101,7 +102,11 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw velocity (a), speed, width, slip (b-d), sliding times (e), widths (f) and a map (g)."""
+    """Draw the velocity in the layer (a), numbers of pulses (b to f), and a map of outcomes (g).
+
+    The numbers are speed, width and slip (b, c, d), the time of sliding (e), and the width if the
+    strength depends on the normal stress (f).
+    """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.7, "aaa;bcd;efg", height_ratios=(0.9, 2.3, 2.3))
     field_axes, *pulse_panels, time_axes, coupled_axes, map_axes = panels
     pulses = table[table["part"] == "pulse"]
@@ -140,7 +145,9 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
     axes.set(aspect="equal", xlabel=r"position $x/H$", ylabel=r"$y/H$", yticks=(0.0, 1.0))
     first = field.iloc[0]
     gamma = first["gamma"]
-    title = style.conditions(True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"])
+    title = style.conditions(
+        held=True, tau_0=first["tau0"], gamma=round(gamma, 3), time=first["time"]
+    )
     axes.set_title(rf"{title}, $G_\mathrm{{c}}/G_0 = {first['fracture_energy']:.2g}$")
     # The first row is the fault. It moves fastest at the tip, which runs almost at the speed of the
     # longitudinal wave.

@@ -37,9 +37,9 @@ def draw(table: pd.DataFrame) -> Figure:
     largest_thickness = positions["thickness"].max()
     is_thick = positions["thickness"] == largest_thickness
     draw_slips(thick_axes, positions[is_thick])
-    thick_axes.set_title(rf"height ${largest_thickness:g}\,H$, {conditions(True)}")
+    thick_axes.set_title(rf"height ${largest_thickness:g}\,H$, {conditions(held=True)}")
     draw_slips(thin_axes, positions[~is_thick])
-    thin_axes.set_title(f"height $H$, {conditions(True)}")
+    thin_axes.set_title(f"height $H$, {conditions(held=True)}")
     return figure
 
 

@@ -45,7 +45,7 @@ SOLUTION_MARKERS: dict[str, Look] = {
 ROW_OFFSETS = {"elastic": -0.17, "total": 0.17}
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return one row for each claim and combination of open choices.
 
     The column over has the deviation divided by the tolerance. The column choice names the choice

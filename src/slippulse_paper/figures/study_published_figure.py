@@ -43,11 +43,12 @@ READING_LABELS = {
 }
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of the study published_figure, and three more parts.
 
     curve : fits interpolated between the damping ratios of the study, for each release rule
-    best : the pull of each reading at the best of these fits, for each release rule
+    best : the pull of each reading at the best of these fits, for each release rule. A pull is the
+        difference between fit and reading, divided by the reading error
     ours : parameters of the scene that we draw in place of the published figure
     """
     study = tables["published_figure"]
@@ -75,7 +76,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) chi-square and (b, c) confidence regions by damping ratio, and (d) pulls."""
+    """Draw (a) chi-square and (b, c) confidence regions by damping ratio, and (d) pulls.
+
+    A pull is the difference between the best fit and a reading, divided by the reading error.
+    """
     figure, panels = new_panels(PAGE_WIDTH, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
     chi2_axes, tau0_axes, gamma_axes, pull_axes = panels
     # The interpolated fits and the best fit of each release rule.
@@ -101,7 +105,10 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_pulls(axes: Axes, best_fits: Mapping[str, pd.DataFrame]) -> None:
-    """Draw the pulls of the best fit of each release rule, in one column for each reading."""
+    """Draw the pulls of the best fit of each release rule, in one column for each reading.
+
+    A pull is the difference between the fit and the reading, divided by the reading error.
+    """
     axes.axhspan(-1.0, 1.0, color="0.92")
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     # The two rules are drawn beside each other.

@@ -28,7 +28,7 @@ REFINED_COLUMNS = {name: f"pulse_{name}" for name in QUANTITY_LABELS} | {
 }
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return one row for each quantity of a pulse, in three parts, which the column role names.
 
     theory : exact values divided by the paper's formula (column over_paper) at each damping ratio
@@ -61,17 +61,17 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def draw(table: pd.DataFrame) -> Figure:
     """Draw (a to c) each quantity divided by the paper's formula, (d) refined lattices."""
     figure, (*quantity_panels, refined_axes) = style.new_panels(PAGE_WIDTH, 4.6, "ab;cd")
-    roles = style.by_role(table)
-    gamma = roles["simulation"]["gamma"].iloc[0]
+    rows_by_role = style.by_role(table)
+    gamma = rows_by_role["simulation"]["gamma"].iloc[0]
     for axes, (quantity, label) in zip(quantity_panels, QUANTITY_LABELS.items(), strict=True):
         draw_quantity(axes, table[table["quantity"] == quantity])
         axes.set(xlabel=r"damping ratio $b$", ylabel=f"{label} / paper's formula")
-        axes.set(xlim=(-0.02, None), title=conditions(True, gamma=gamma))
+        axes.set(xlim=(-0.02, None), title=conditions(held=True, gamma=gamma))
     # The three panels share the legend of the first one.
     first_axes = quantity_panels[0]
     first_axes.plot([], [], "o", color=GREY, label="simulation")
     style.legend_above(figure, first_axes)
-    draw_errors_by_spacing(refined_axes, roles["refined"])
+    draw_errors_by_spacing(refined_axes, rows_by_role["refined"])
     return figure
 
 
@@ -109,7 +109,7 @@ def draw_errors_by_spacing(axes: Axes, rows: pd.DataFrame) -> None:
     # All runs are the same scene at several spacings.
     first = rows.iloc[0]
     scene = conditions(
-        True, gamma=first["gamma"], tau_0=first["left"], damping_ratio=first["damping_ratio"]
+        held=True, gamma=first["gamma"], tau_0=first["left"], damping_ratio=first["damping_ratio"]
     )
     axes.set(ylabel=r"|simulation / limit $-$ 1|", ylim=(1e-6, None), title=scene)
     axes.legend(loc="lower right")

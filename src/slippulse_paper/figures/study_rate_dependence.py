@@ -28,16 +28,16 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     plane_axes, pulse_axes, map_axes, arrest_axes = panels
     table = table.assign(scaled_rate=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
-    roles = style.by_role(table)
-    runs = roles["lattice"]
-    _draw_plane(plane_axes, runs, roles["limit"])
+    rows_by_role = style.by_role(table)
+    runs = rows_by_role["lattice"]
+    _draw_plane(plane_axes, runs, rows_by_role["limit"])
     # Panels b and c show pulses at this level of the pre-stress.
-    level = roles["map"]["level"].iloc[0]
-    _draw_pulses(pulse_axes, roles["steady"], runs[runs["level"] == level])
+    level = rows_by_role["map"]["level"].iloc[0]
+    _draw_pulses(pulse_axes, rows_by_role["steady"], runs[runs["level"] == level])
     pulse_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$; points: lattice")
-    _draw_maps(map_axes, roles["map"])
+    _draw_maps(map_axes, rows_by_role["map"])
     map_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {level:g}$, exact")
-    _draw_arrest(arrest_axes, roles["arrest"], roles["asymptote"])
+    _draw_arrest(arrest_axes, rows_by_role["arrest"], rows_by_role["asymptote"])
     return figure
 
 

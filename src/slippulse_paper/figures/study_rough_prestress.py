@@ -47,7 +47,7 @@ class Ensemble(NamedTuple):
         return self.rows[self.rows["part"] == name]
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the table of the study rough_prestress, with NaN in place of infinite numbers.
 
     The column balance has the position at which the integral of the pre-stress has fallen to 0. It
@@ -65,11 +65,14 @@ def draw(table: pd.DataFrame) -> Figure:
     figure, panels = style.new_panels(PAGE_WIDTH, 5.6, "ab;cd")
     survival_axes, rate_axes, walk_axes, velocity_axes = panels
     held_top = table[table["boundary"] == "displacement"]
-    with_deaths = held_top[(held_top["part"] == "ensemble") & (held_top["deaths"] > 0.0)]
+    ensembles_of_held_top = held_top[held_top["part"] == "ensemble"]
+    with_deaths = ensembles_of_held_top[ensembles_of_held_top["deaths"] > 0.0]
     for ensemble in ensembles(held_top, with_deaths):
         draw_survival(survival_axes, ensemble)
         draw_rate(rate_axes, ensemble)
-    finish_survival(survival_axes, with_deaths["stop"].max())
+    # If no pulse dies, panel a is empty, but its axis still has an end.
+    stops = ensembles_of_held_top["stop"] if with_deaths.empty else with_deaths["stop"]
+    finish_survival(survival_axes, stops.max())
     finish_rates(rate_axes, with_deaths)
     held_stress = table[table["boundary"] == "stress"]
     for ensemble in ensembles(held_stress, held_stress[held_stress["part"] == "ensemble"]):
@@ -115,9 +118,11 @@ def finish_survival(axes: Axes, stop: float) -> None:
     """Set the axes of panel a; pulses are followed up to the distance ``stop``."""
     axes.set(xlabel="distance $x/H$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
     axes.set(ylim=(0.6, 1.01), xlim=(0.0, stop))
-    axes.legend(
-        title=LEGEND_TITLE, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
-    )
+    # The panel is empty if no pulse has died.
+    if axes.lines:
+        axes.legend(
+            title=LEGEND_TITLE, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
+        )
 
 
 def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
@@ -139,9 +144,10 @@ def finish_rates(axes: Axes, with_deaths: pd.DataFrame) -> None:
 
     Within the band around the line, they differ by less than a factor of two.
 
-    with_deaths : one row for each ensemble in which a pulse died
+    with_deaths : one row for each ensemble in which a pulse died. The first ones, as many as there
+        are COLOURS, have been drawn already (see `draw_rate`)
     """
-    # Ensembles for which there is no colour left are small grey points.
+    # The others are small grey points.
     uncoloured = with_deaths.iloc[len(COLOURS) :]
     axes.plot(uncoloured["barrier_rate"], uncoloured["rate"], ".", color=GREY, zorder=1.0)
     ends = np.array([3e-5, max(1e-2, 1.2 * with_deaths["barrier_rate"].max())])
@@ -181,7 +187,7 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
 
 
 def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
-    """Mark the slip velocity of each pulse that is alive at the end, by its exact velocity."""
+    """Mark the slip velocity of each pulse that is alive at the end, as a function of theory's."""
     pulses = ensemble.part("pulse")
     alive = pulses[~pulses["died"].astype(bool)]
     look: Look = {"color": ensemble.colour, "label": ensemble.label}

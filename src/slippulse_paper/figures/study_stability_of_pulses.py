@@ -29,7 +29,7 @@ ROUNDING_ERROR = 2e-9
 MIN_DRAWN_VELOCITY = 0.03
 
 
-def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the rows of three parts of the figure, which the column role names.
 
     exact, lattice : final slip as a function of the distance x from the step, under a displacement
@@ -174,10 +174,11 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         label_position = (time.iloc[-1], velocity.iloc[-1])
         if velocity.iloc[-1] <= MIN_DRAWN_VELOCITY:
             # The label stands where the line leaves the panel at its bottom. Interpolation needs
-            # ascending velocities. Here they fall with time, so their order is reversed.
-            backwards = line.iloc[::-1]
-            log_velocity = np.log(backwards["largest_velocity"])
-            exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), log_velocity, backwards["time"])
+            # ascending velocities, but they fall with time, so their order is reversed.
+            falling_log_velocity = np.log(velocity.to_numpy())
+            exit_time = np.interp(
+                np.log(MIN_DRAWN_VELOCITY), falling_log_velocity[::-1], time.to_numpy()[::-1]
+            )
             label_position = (exit_time, 1.15 * MIN_DRAWN_VELOCITY)
         axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")

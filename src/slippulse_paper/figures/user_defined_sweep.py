@@ -50,13 +50,14 @@ COLUMN_WORDS |= {"profile": "profile", "seed": "seed"}
 
 
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
-    """Return `main_numbers` of each run, with its flags and four more columns.
+    """Return the main measured numbers of each run, with its flags and four more columns.
 
     axis : name of the parameter on the horizontal axis
     x : value of this parameter
     series : values of the other parameters that vary, as a text
     fixed : settings that all runs share, as a text
     """
+    # The figure needs only the table of its sweep.
     (runs,) = tables.values()
     has_equal_levels = (runs["left"] == runs["right"]).all()
     # With different levels, tau_0 is the same number for all runs, so that it does not vary.
@@ -89,7 +90,7 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
         columns += levels
     columns += ["damping_ratio", "width", "dx"]
     shared = [column for column in columns if runs[column].nunique() == 1]
-    return conditions(has_springs, **runs[shared].iloc[0])
+    return conditions(held=has_springs, **runs[shared].iloc[0])
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:

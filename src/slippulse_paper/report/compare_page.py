@@ -147,6 +147,7 @@ def differing_numbers(numbers: pd.DataFrame) -> pd.DataFrame:
     # Numbers of the other outcome agree within their uncertainties, even if they are not equal.
     may_differ = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
     differing = numbers[may_differ & (numbers["new"] != numbers["old"])]
+    # One of the two uncertainties is enough.
     has_uncertainty = differing[["old_uncertainty", "new_uncertainty"]].notna().any(axis=1)
     difference = (differing["new"] - differing["old"]).abs()
     # The tiny lower bound avoids a division by 0.

@@ -127,8 +127,9 @@ def compare_numbers(
     numbers.loc[agrees, "outcome"] = AGREES
     numbers.loc[is_unknown, "outcome"] = UNKNOWN
 
-    value_count = numbers[["new", "old"]].notna().sum(axis=1)
-    return numbers[(value_count == 2) | ((value_count == 1) & is_same_lattice)]
+    has_both = numbers[["new", "old"]].notna().all(axis=1)
+    has_one = numbers[["new", "old"]].notna().any(axis=1)
+    return numbers[has_both | (has_one & is_same_lattice)]
 
 
 def list_altered_numbers(

@@ -55,13 +55,14 @@ def front_law(law: pd.DataFrame) -> dict:
 
     The front law relates the pre-stress tau, the damping ratio b and the front speed v. The result
     has one grid of ln(tau/(1 - tau)) for each release rule. Row i of a grid belongs to the damping
-    ratio b = scale sinh(i step), and column j to the speed ln(v - 1) = first + j step. The entries
-    "ratio" (of rows) and "excess" (of columns) have these constants.
+    ratio b = scale sinh(i step), and column j to the speed ln(v - 1) = first + j step. The entry
+    "ratio" has the constants of the rows (scale and step), and "excess" those of the columns.
 
     law : the table of the study explorer_law
     """
     # The browser does not compute this law itself, because that needs the Wiener-Hopf method.
-    # Values of arsinh(b/scale) for the rows, from 0, and of ln(v - 1) for the columns.
+    # The study has evenly spaced values of arsinh(b/scale), from 0 on, which become the rows, and
+    # of ln(v - 1), which become the columns.
     row_values, column_values = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     last_row = float(row_values[-1])
     first_column, last_column = float(column_values[0]), float(column_values[-1])

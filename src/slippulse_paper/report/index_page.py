@@ -45,8 +45,10 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     # This function evaluates the expressions in a text.
     filled = partial(fill, names=names)
     summary = read_text(texts["summary"])
+    # Rows of the table of the paper's statements and their verdicts.
     rows = statement_rows(summary, ledger, filled)
     paragraphs = {key: filled(summary[key]) for key in ("question", "accuracy")}
+    # The first line of the summary is enough to answer the question.
     paragraphs["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
     glossary = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
     captions = read_captions(texts["captions"], filled)

@@ -78,10 +78,12 @@ class Gallery:
         self.captions, self.current = captions, current
         self.folder = inputs.figures_folder
         names_by_document = {name: FIGURE_CALL.findall(text) for name, text in texts.items()}
+        # Figures that no text shows come at the end of the last document.
         shown = {*chain.from_iterable(names_by_document.values())}
         self.further_names = [name for name in inputs.figures if name not in shown]
         last_document = [*texts][-1]
         names_by_document[last_document] += self.further_names
+        # Each document has its own letter in front of the numbers of its figures.
         self.numbers: dict[str, FigureNumber] = {}
         for letter, (document, names) in zip(
             NUMBER_LETTERS, names_by_document.items(), strict=True

@@ -205,14 +205,15 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
     readings : the part ``published`` of the configuration
     """
+    # The further numbers of these two claims are our values of the readings, by their statements.
     left_panel = ledger("published_space_time_figure").further
     right_panel = ledger("published_space_time_figure_right").further
-    ours = left_panel | right_panel
+    our_values = left_panel | right_panel
     rows = []
     for reading in readings.values():
         statement = reading["statement"]
-        drawn = with_uncertainty(reading["value"], reading["reading_error"])
-        rows.append((statement, drawn, number(ours.get(statement), 5)))
+        published_value = with_uncertainty(reading["value"], reading["reading_error"])
+        rows.append((statement, published_value, number(our_values.get(statement), 5)))
     columns = [
         text_column("quantity", 50),
         number_column("published", 20),

@@ -118,14 +118,15 @@ def parameters(config: Mapping, name: str) -> str:
     boundary = BOUNDARY_SYMBOLS[simulation["boundary"]]
     # The values of each parameter by its symbol. Parameters without values are left out at the end.
     values: dict[str, Sequence | None] = {r"$\gamma$": simulation.get("gamma")}
-    values |= {f"${term.symbol}$": simulation.get(name) for name, term in EXTRA_TERMS.items()}
+    values |= {f"${term.symbol}$": simulation.get(key) for key, term in EXTRA_TERMS.items()}
     if right == ["same"]:
         values[r"$\tau_0$"] = left
     else:
         values |= {r"$\tau_{0,l}$": left, r"$\tau_{0,r}$": right}
-    # Levels beyond a step of the pre-stress.
+    # The pre-stress may have a step, beyond which it has other levels.
     values[r"then $\tau$"] = simulation.get("beyond", {}).get("levels")
     values["$W$"] = _profile_values(simulation, "width")
+    # The damping is given either as beta or as the damping ratio b.
     values[r"$\beta$"] = simulation.get("beta")
     if not values[r"$\beta$"]:
         values["$b$"] = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
@@ -207,8 +208,9 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
     """
     lines = []
     for entry in summary["verdict"]:
+        # The claim with the worst verdict decides the verdict of the line.
         worst = worst_claim(ledger, entry["claims"])
-        # Clauses of the answer, by the verdict for which they are written.
+        # The text may have a clause of the answer for each verdict.
         clause_by_verdict = entry.get("said", {})
         # The subject of each claim by its id. Claims under "beside" are shown, but do not count.
         subjects = entry["claims"] | entry.get("beside", {})

@@ -149,7 +149,7 @@ def is_stable(
     object.__setattr__(scene, "max_step", step)
     lattice = LATTICES[scheme](scene, None, scene.beta)
     # The lattice calls `stop_at_first_stick` each time after this number of steps.
-    lattice.call_steps = CHECK_INTERVAL
+    lattice.max_call_steps = CHECK_INTERVAL
 
     def stop_at_first_stick(_progress: float) -> None:
         """Stop the run if a block has stuck."""

@@ -13,13 +13,17 @@ from ..checks import check_number
 STEP_PER_GROWTH_TIME = 0.5
 
 
+# Values of `LawKink.argument_row`: rows of the table of time derivatives of slip in the kernels.
+SLIP_ROW, SLIP_RATE_ROW = 0, 1
+
+
 class LawKink(NamedTuple):
     """Friction that decreases linearly with its argument up to a kink, and is constant beyond.
 
     The argument is the slip since the release, or the slip rate.
     """
 
-    argument_row: int  # 0 if the argument is the slip, 1 if it is the time derivative of slip
+    argument_row: int  # SLIP_ROW or SLIP_RATE_ROW
     weakening_slope: float  # decrease of friction per unit of the argument, before the kink
     argument_at_kink: float
     friction_beyond: float  # friction at the kink and beyond

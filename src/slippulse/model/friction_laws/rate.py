@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .law import STEP_PER_GROWTH_TIME, Friction, LawKink, Traits
+from .law import SLIP_RATE_ROW, STEP_PER_GROWTH_TIME, Friction, LawKink, Traits
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class RateWeakening(Friction):
         kink_rate = self.limit / self.slope
         return Traits(
             law_kink=LawKink(
-                argument_row=1,
+                argument_row=SLIP_RATE_ROW,
                 weakening_slope=self.slope,
                 argument_at_kink=kink_rate,
                 friction_beyond=-self.limit,

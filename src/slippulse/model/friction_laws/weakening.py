@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from .law import STEP_PER_GROWTH_TIME, Friction, LawKink, Traits
+from .law import SLIP_ROW, STEP_PER_GROWTH_TIME, Friction, LawKink, Traits
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class SlipWeakening(Friction):
         """
         return Traits(
             law_kink=LawKink(
-                argument_row=0,
+                argument_row=SLIP_ROW,
                 weakening_slope=1.0 / self.d_c,
                 argument_at_kink=self.d_c,
                 friction_beyond=0.0,

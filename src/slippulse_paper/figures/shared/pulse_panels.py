@@ -51,7 +51,7 @@ SIMULATION_LOOK: Look = {"linewidth": 2.6, "alpha": 0.3}
 PARAMETERS = ["left", "right", "width", "gamma", "damping_ratio", "run_flags"]
 
 
-def pulse_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def pulse_table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return simulated and exact pulses of each sweep at a few levels of pre-stress.
 
     The column role is "run" (one row for each run, with its parameters), "simulation" or "exact"
@@ -154,6 +154,7 @@ def styled_runs(table: pd.DataFrame) -> pd.DataFrame:
     The colour depends on the level on the left. The line style (dashes) depends on the damping
     ratio under a displacement boundary, and on the width of the Gaussian under a stress boundary.
     """
+    # A panel has the name of its boundary condition.
     boundary, runs = table["panel"].iloc[0], table[table["role"] == "run"]
     colours = list(style.colour(LEVEL_COLUMNS[boundary], runs["left"]))
     values = runs[LINE_STYLE_COLUMNS[boundary]]
@@ -225,7 +226,7 @@ def title(table: pd.DataFrame) -> str:
     has_springs = table["panel"].iloc[0] == "displacement"
     column = "gamma" if has_springs else "damping_ratio"
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
-    return rf"{style.conditions(has_springs)}, ${SYMBOLS[column]} = {values}$"
+    return rf"{style.conditions(held=has_springs)}, ${SYMBOLS[column]} = {values}$"
 
 
 def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length_in_widths: float) -> None:

@@ -34,7 +34,7 @@ SECOND_COLUMN = {"displacement": "gamma", "stress": "width"}
 LINE_COUNT = 3
 
 
-def transition_table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
+def transition_table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return one row for each run of all sweeps, with its transition length and time.
 
     The columns length and time have the measured values. With a prefix, they have the numerical
@@ -71,7 +71,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
     """Draw the measured length or time as a function of that by the paper's formula.
 
     quantity : "length" or "time"
-    colours : one colour for each run: of the face of its marker (c), and of its rim (edgecolors)
+    colours : colours of the markers, one for each run: "c" for faces, and "edgecolors" for rims
     """
     predicted, measured = runs[f"paper_{quantity}"], runs[quantity]
     symbol = QUANTITIES[quantity]
@@ -144,8 +144,8 @@ def _scatter(
 ) -> None:
     """Draw one marker for each run: in its colours, or open and grey if the run is flagged.
 
-    colours : one colour for each run: of the face of its marker (c), and of its rim (edgecolors)
-    sizes : size and line width of the markers
+    colours, sizes : arguments of `Axes.scatter`. The colours have one value for each run: "c" for
+        the face of its marker, and "edgecolors" for the rim
     """
     look: Look = {"s": 9.0, "linewidths": 0.0, "edgecolors": "white", "zorder": 3} | sizes
     is_flagged = runs["run_flags"].notna().to_numpy()
@@ -167,17 +167,15 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     level_column, second_column = LEVEL_COLUMNS[boundary], SECOND_COLUMN[boundary]
     table = table.assign(**{level_column: table["left"]}).sort_values("damping_ratio")
     # The insets show a few levels, at a middle value of the second parameter.
-    middle = spread_values(table[second_column], LINE_COUNT)[1]
+    few_values = spread_values(table[second_column], LINE_COUNT)
+    middle = few_values[few_values.size // 2]
     drawn_levels = spread_values(table["left"], LINE_COUNT)
     runs_of_insets = table[(table[second_column] == middle) & table["left"].isin(drawn_levels)]
     colours = {"c": style.colour("damping_ratio", table["damping_ratio"])}
     spacing = table["dx"] / table["width"]
-    title = style.conditions(boundary == "displacement")
+    title = style.conditions(held=boundary == "displacement")
     title += rf", $\Delta x/W$ = {spacing.min():.2g} to {spacing.max():.2g}"
-    # The first damping ratio is 0.
     ratios = np.sort(table["damping_ratio"].unique())
-    smallest_positive, largest = ratios[1], ratios[-1]
-    ticks = ratios[::2] if len(ratios) > 4 else ratios
     figure, panels = style.new_panels(PAGE_WIDTH, 3.5, "ab")
     for axes, quantity in zip(panels, QUANTITIES, strict=True):
         draw_collapse(axes, table, quantity, colours)
@@ -185,10 +183,7 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         # The runs lie above the line of equality, so that the lower right corner is free.
         box = (0.52, 0.12, 0.26, 0.29)
         inset = ratio_inset(axes, box, runs_of_insets, quantity, "damping_ratio", level_column)
-        # A logarithmic scale has no place for 0, so the scale is linear near 0.
-        inset.set_xscale("symlog", linthresh=smallest_positive, linscale=0.5)
-        style.few_ticks(inset.xaxis, ticks)
-        inset.set_xlim(-0.4 * smallest_positive, 1.7 * largest)
+        _set_axis_of_damping_ratios(inset, ratios)
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
@@ -196,3 +191,16 @@ def damping_figure(table: pd.DataFrame) -> Figure:
     handles.append(entry(label, color=BLACK, linewidth=0.8))
     style.legend_below(figure, handles, len(handles))
     return figure
+
+
+def _set_axis_of_damping_ratios(axes: Axes, ratios: np.ndarray) -> None:
+    """Set scale, ticks and range of a horizontal axis for these damping ratios, in rising order.
+
+    A logarithmic scale has no place for 0, so the scale is linear near 0.
+    """
+    positive_ratios = ratios[ratios > 0.0]
+    # If all runs are undamped, any range will do.
+    smallest_positive = positive_ratios[0] if positive_ratios.size else 1.0
+    axes.set_xscale("symlog", linthresh=smallest_positive, linscale=0.5)
+    style.few_ticks(axes.xaxis, ratios[::2] if len(ratios) > 4 else ratios)
+    axes.set_xlim(-0.4 * smallest_positive, 1.7 * max(ratios[-1], smallest_positive))
