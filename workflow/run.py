@@ -322,7 +322,8 @@ def record_run(make_options: Mapping[str, str], targets: list[str]) -> None:
 def verified_run(make_options: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
     """Return the options and targets that `verify` uses.
 
-    They are those of make or, if make has no options that change results, those of the last run.
+    They are those of make. If make has no options that change results, the options are those of the
+    last run, and so are the targets if make has none.
     """
     options, targets = result_options(make_options), targets_of(make_options)
     if not options:

@@ -36,6 +36,8 @@ def test_kaplan_meier_of_a_case_by_hand():
 def test_rates_and_intervals_of_known_cases():
     rate = death_rate([Fate(3.0, True), Fate(15.0, True), Fate(25.0, False)], start=5.0)
     assert rate["rate"] == pytest.approx(1.0 / 30.0) and rate["deaths"] == 1
+    rate = death_rate([Fate(3.0, True)], start=5.0)
+    assert math.isnan(rate["rate"]) and math.isnan(rate["rate_high"]) and rate["deaths"] == 0
     # The rule of three, and tabulated exact intervals.
     assert poisson_interval(0) == pytest.approx((0.0, -math.log(0.025)))
     assert poisson_interval(10) == pytest.approx((4.7954, 18.3904), abs=1e-4)

@@ -90,9 +90,9 @@ def test_page_one_answers_in_a_minute(manuscript):
     ("verdict", "expected"),
     {
         "reproduced with caveat": "**Yes**: pulses form.",
-        "not reproduced": "**No**: that pulses form, is not reproduced.",
-        "not testable": "**Not decided**: that pulses form, is not tested in this run.",
-        "inconclusive": "**Not decided**: that pulses form, stays open.",
+        "not reproduced": "**No**: the claim that pulses form is not reproduced.",
+        "not testable": "**Not decided**: the claim that pulses form is not tested in this run.",
+        "inconclusive": "**Not decided**: the claim that pulses form stays open.",
     }.items(),
 )
 def test_the_answer_is_yes_no_or_open_by_the_verdict_of_its_first_line(verdict, expected):

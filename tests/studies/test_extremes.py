@@ -31,10 +31,10 @@ WRONG = "WRONG WITHOUT A FLAG"
 )
 def test_the_verdict_is_computed(monkeypatch, expected, outcome, verdict):
     how = "side_effect" if isinstance(outcome, Exception) else "return_value"
-    monkeypatch.setattr(extremes, "measured", Mock(**{how: outcome}))
+    monkeypatch.setattr(extremes, "measured_outcome", Mock(**{how: outcome}))
     monkeypatch.setattr(Case, "expected", lambda case: expected)
     case = Case("family", "where", "front speed", "right", 0.1, 1.0)
-    assert extremes.judged(case, 0.3)["verdict"] == verdict
+    assert extremes.judged_row(case, 0.3)["verdict"] == verdict
 
 
 def test_every_case_ends_as_it_should(study):

@@ -63,15 +63,15 @@ def test_pulses_are_followed_until_some_of_them_split(study):
 
 def test_pulses_at_a_smaller_gamma_split_on_the_finest_grid_only():
     gamma = 0.3
-    rows = layer.near_and_far(
-        layer.uniform("displacement", gamma, 0.8, layer.weakening_of(0.09, 0.8, gamma))
+    rows = layer.near_and_far_rows(
+        layer.uniform_scene("displacement", gamma, 0.8, layer.weakening_of(0.09, 0.8, gamma))
     )[1]
     far = pd.DataFrame(rows).query("station == 3").set_index(["part", "cells"])
     split = far["split_position"] / layer.stretch(gamma)
     assert split["far"][[20, 40]].isna().all() and split["damped"].isna().all()
     assert split["far"][80] == pytest.approx(24.3, abs=0.1)
-    assert layer.is_very_brittle(layer.uniform("displacement", 0.3, 0.8, 0.1))
-    assert not layer.is_very_brittle(layer.uniform("displacement", 0.12, 0.8, 0.1))
+    assert layer.is_very_brittle(layer.uniform_scene("displacement", 0.3, 0.8, 0.1))
+    assert not layer.is_very_brittle(layer.uniform_scene("displacement", 0.12, 0.8, 0.1))
 
 
 def test_damping_keeps_pulses_from_splitting(study):

@@ -180,7 +180,7 @@ CALLS = [
     ("allowed: numbers of blocks whose sum", sp.point, SWEEP.drop_vars("x"), 0),
     ("run: a sweep; allowed: one run of it, such as point(sweep, 0)", sp.plot, SWEEP),
     ("run: a sweep; allowed: one run of it", sp.plot, sp.as_grid(SWEEP.isel(point=[0]), ["left"])),
-    ("run: without slip; allowed: a run with these, which a sweep has if", sp.plot, RUN),
+    ("run: without slip; allowed: a run with these; a sweep records them if", sp.plot, RUN),
     ("run: int; allowed: a Dataset that simulate returned", sp.plot, 3),
     ("attributes: 3; allowed: a mapping", sp.Scene.from_attributes, 3),
     ("x: 'a'; allowed: numbers", PLAIN, "a"),

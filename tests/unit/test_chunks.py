@@ -96,7 +96,7 @@ def test_chunks_of_different_sweeps_are_not_joined(made, tmp_path):
     outputs = {"joined": tmp_path / "joined"}
     for index, kind in enumerate(KINDS):
         files = {"chunks": [short[index], long[index]], "finest": [sweep[1]]}
-        with pytest.raises(UnreadableFile, match="do not have the runs of one sweep"):
+        with pytest.raises(UnreadableFile, match="do not contain the runs of one sweep"):
             join.run(files, outputs, {"kind": kind, "record": ["fronts", "fields"]})
     assert not any(tmp_path.iterdir())
 

@@ -15,7 +15,7 @@ from slippulse_paper.claims import rules
 from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
 from slippulse_paper.claims.evidence import Evidence, agreed_answers, fit_exponent
-from slippulse_paper.claims.findings import findings
+from slippulse_paper.claims.findings import collapse, findings
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
 from slippulse_paper.claims.paper_claims import (
@@ -24,7 +24,12 @@ from slippulse_paper.claims.paper_claims import (
     fields_of_claim,
     judge_claim,
 )
+from slippulse_paper.claims.pulse_claims import growth_signs
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
+from slippulse_paper.claims.transition_claims import (
+    judge_rise_with_prestress,
+    transition_time_underestimated,
+)
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
 NAN = float("nan")
@@ -300,6 +305,54 @@ def test_a_run_is_decided_where_two_lattices_agree_or_theory_tells():
     assert agreed_answers([True, None, False], [True, None, True]) == [True, None, None]
 
 
+def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back():
+    choice = {"release": "total", "damping_ratio": 0.1, "nucleation": "tent", "fraction": 0.95}
+    times = {"transition_time": 3.0, "paper_transition_time": 2.0}
+    lengths = {"transition_length": 3.0, "paper_transition_length": 2.0}
+    runs = pd.DataFrame({"left": [-1.0, -2.0], "boundary": "stress", "width": 1.0})
+    runs = runs.assign(**choice, **times, **lengths)
+
+    class StrongBarriers:
+        tables = dict.fromkeys(("open_choices", "scaling_stress", "damping_stress"), runs)
+
+        def lattices(self, sweep, where):
+            return [self.tables[sweep].query(where)]
+
+    claim = transition_time_underestimated(StrongBarriers(), "underestimate")
+    assert claim.verdict() == NONE
+    assert np.isnan([*claim.json_fields()["further"].values()]).all()
+
+
+def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_zero():
+    """In the first pair of runs the second pulse grows more than the first, in the other less."""
+    runs = pd.DataFrame({"width": [1.0, 1.0, 2.0, 2.0], "beyond": [0.0, 0.1, 0.0, 0.1]})
+    runs["largest_velocity_change"] = [0.01, 0.05, 0.1, 0.05]
+    runs["pulse_half_width"] = [1.0, 1.5, 3.0, 2.0]
+    same = {"left": -0.5, "right": 0.0, "dx": 0.1, "damping_ratio": 0.1, "release": "total"}
+    signs = growth_signs(runs.assign(**same, friction="coulomb", regime="pulse, one-way, steady"))
+    assert [*signs["changed"]] == [0.0, 1.0, 0.0, 0.0]
+    assert [*signs["widened"]] == [0.0, 1.0, 0.0, -1.0]
+
+
+def test_a_sweep_may_have_several_release_rules():
+    """A length rises with the level by either rule, and damping changes it by a factor of two."""
+    lists = {"left": [0.2, 0.4], "release": ["total", "elastic"], "damping_ratio": [0.0, 0.1]}
+    runs = pd.MultiIndex.from_product(lists.values(), names=lists).to_frame(index=False)
+    runs = runs.assign(gamma=0.1, width=1.0, dx=0.1)
+    runs["transition_length"] = np.where(runs["release"] == "total", 5.0, 3.0) * (
+        1.0 + runs["left"]
+    )
+    runs["transition_length"] *= np.where(runs["damping_ratio"] > 0.0, 2.0, 1.0)
+
+    class Sweeps:
+        def finest(self, name):
+            return runs
+
+    numbers = collapse(Sweeps())
+    assert (numbers["stress_change"], numbers["stress_scenes"]) == (2.0, 4.0)
+    assert judge_rise_with_prestress(runs, "transition_length").decided == [True] * 4
+
+
 def test_the_extra_verdict_decides_at_every_tolerance():
     """So a claim that fails by its second condition has no tolerance at which it is reproduced."""
     numbers = {"deviations": np.array([0.1]), "median": Uncertain(0.1, 0.001)}
@@ -368,7 +421,7 @@ WHY = {
     "estimate": (ESTIMATE, "The median deviation is 25 %, tolerance 20 %; the uncertainty is 1 %."),
     "scaling": (
         {"kind": "scaling"},
-        "The deviation is 0.25, tolerance 0.2; the uncertainty is 1 %.",
+        "The deviation is 0.25, tolerance 0.2; the uncertainty is 0.0100.",
     ),
     "always": (AGAINST, "It holds in 5 of 8 cases (1 against, 2 undecided)."),
     "reading": (UNLIKELY, "The best fit has p = 2.0×10⁻⁴, required at least 0.05."),
@@ -411,7 +464,7 @@ def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
     assert ledger.summary() == f"{counted}."
     remark = CLAIM | {"id": "d", "counted": False}
     ledger_with_remark = Ledger([*(CLAIM | fields for fields in others), remark])
-    more = "1 more claim, not counted, is not reproduced"
+    more = "1 further claim that is not counted is not reproduced"
     assert ledger_with_remark.summary() == f"{counted}; {more}."
     changed = [{"key": "c", "shipped": OPEN, "here": NO}]
     assert ledger.differences({"a": YES, "b": YES, "c": OPEN}) == changed

@@ -267,7 +267,9 @@ REFUSED = {
     ),
     "prestress.steps: ": lambda: sp.Prestress(0, 0, steps=((1, 0),), points=((0, 0), (1, 0))),
     "prestress.points: 3; allowed: a list": lambda: sp.Prestress(0, 0, points=3),
-    "prestress.peak: 0.9; allowed: 1 without a width": lambda: through([0, 1], [0, 0], peak=0.9),
+    "prestress.peak: 0.9; allowed: 1 unless a width is given": lambda: through(
+        [0, 1], [0, 0], peak=0.9
+    ),
     "points x: 100001; allowed: 2 to 100000": lambda: through(range(100001), [0.0] * 100001),
     "tolerance: 0.0": lambda: sp.Prestress.from_function(math.cos, 0.0, 1.0, 0.0),
     "function(0)": lambda: sp.Prestress.from_function(lambda x: math.nan, 0.0, 1.0, 0.1),

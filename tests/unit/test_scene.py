@@ -179,5 +179,5 @@ def test_the_balance_position_has_its_closed_form(width):
 
 
 def test_a_pre_stress_without_balance_is_refused():
-    with pytest.raises(ArithmeticError, match="no balance at x < 0"):
+    with pytest.raises(ArithmeticError, match="no balance position at x < 0"):
         sp.theory.prestress_balance_position(sp.Prestress(-0.5, 0.0, bumps=((5.0, -3.0, 2.0),)))

@@ -45,6 +45,15 @@ def test_runs_are_selected_by_any_parameters_and_keep_their_blocks(runs):
         runs.sel(gamma=0.5)
 
 
+def test_the_nearest_run_is_found_among_runs_without_the_parameter():
+    scenes = [sp.Scene("stress", sp.Prestress(-0.3, 0.0, width), 0.5, 0.1) for width in (None, 2.0)]
+    sweep = sp.run_sweep(scenes)
+    assert sweep.sel(width=1.9, method="nearest")["width"].values.tolist() == [2.0]
+    for options in ({"method": "pad"}, {"method": "nearest", "tolerance": 0.1}):
+        with pytest.raises(ValueError, match="allowed: None"):
+            sweep.sel(width=1.9, **options)
+
+
 def test_xarray_and_pandas_operations_work_on_a_sweep(runs):
     sticks = runs["first_stick_time"]
     expected = [float(sticks.sel(gamma=gamma).mean()) for gamma in sorted(GAMMAS)]
@@ -78,6 +87,16 @@ def test_a_full_product_becomes_a_grid_and_other_sweeps_are_refused(runs):
         sp.as_grid(runs.isel(point=[0, 1, 2]))
     with pytest.raises(ValueError, match=r"over: \['speed'\]; allowed: parameters"):
         sp.as_grid(runs, over=["speed"])
+
+
+def test_a_grid_keeps_the_runs_without_a_parameter():
+    lists = {"left": [-0.3, -0.2], "width": [None, 2.0]}
+    sweep = sp.sweep(boundary="stress", right=0.0, duration=0.5, dx=0.1, **lists)
+    grid = sp.as_grid(sweep)
+    assert grid["releases"].sizes == {"left": 2, "width": 2} and len(sp.measure(grid)) == 4
+    # The value NaN is the last one. The first run has no width.
+    assert np.isnan(grid["width"][-1])
+    assert sp.point(grid.isel(left=0, width=-1)).equals(sp.point(sweep, 0))
 
 
 def test_measuring_a_sweep_equals_measuring_each_run(runs):

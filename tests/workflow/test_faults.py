@@ -75,7 +75,7 @@ def test_a_full_disk_leaves_the_old_file(kind, tmp_path):
     path.write_text("what was there\n")
     # With a limit on the size of files, writing fails in the same place as on a full disk.
     least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
-    reason = r"make room and run again[^\n]+\Z"
+    reason = r"free some space and run again[^\n]+\Z"
     with pytest.raises(JobFailed, match=reason), logged(tmp_path / "log"), ExitStack() as after:
         resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, most))
         after.callback(resource.setrlimit, resource.RLIMIT_FSIZE, (least, most))

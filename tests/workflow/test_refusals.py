@@ -102,20 +102,18 @@ LAYERS = {
     "layer.lame_parameter, poisson_ratio: missing": {"layer": {"poisson_ratio": None}},
     "layer.top: 'free'; allowed: held, stress": {"layer": {"top": "free"}},
     "layer.density: missing": {"layer": {"density": None}},
-    "points: at least 3.1e+06 Pa everywhere; allowed: below static friction": {
+    "points: at least 3.1e+06 Pa everywhere; allowed: somewhere below static": {
         "points": EVERYWHERE
     },
     "points: -3.1e+06 Pa; allowed: > -3e+06 Pa": {"points": BACKWARDS},
     "gamma: 0.6; allowed: none, since it follows from the layer": {"gamma": 0.6},
-    "boundary: 'stress'; allowed: none, or the boundary of layer.top = 'held'": {
-        "boundary": "stress"
-    },
+    "boundary: 'stress'; allowed: the one that layer.top = 'held' implies": {"boundary": "stress"},
     "dx: 0.02; allowed: a number > 0 and <= the thickness, 0.01 m": {"dx": 0.02},
     "peak: 1, and the pre-stress of a block is at most 0.4": {
         "points": [[-0.1, 2.7e6], [0.1, 2.7e6]],
         "width": None,
     },
-    "left: 3e+06 Pa; allowed: below static friction, 3e+06 Pa": {
+    "left: 3e+06 Pa; allowed: below static friction (3e+06 Pa)": {
         "points": None,
         "left": 3e6,
         "right": 2.7e6,

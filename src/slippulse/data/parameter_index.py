@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 from xarray.core.indexing import IndexSelResult
 
-from ..model.checks import short_repr
+from ..model.checks import check_that, short_repr
 from ..model.scene import ATTRIBUTES
 
 # `independent_parameters` tries the parameters in this order, each of them once.
@@ -119,7 +119,10 @@ class ParameterIndex(xr.Index):
 
         labels : the values by the name of the parameter
         method : "nearest" selects the nearest number that occurs
+        tolerance : xarray passes this argument, but only None is allowed
         """
+        check_that(method in (None, "nearest"), "method", method, "None or 'nearest'")
+        check_that(tolerance is None, "tolerance", tolerance, "None")
         number_of_runs = len(next(iter(self.values.values())))
         is_selected = np.ones(number_of_runs, dtype=bool)
         for name, label in labels.items():
@@ -152,7 +155,9 @@ class ParameterIndex(xr.Index):
                 matches |= values == value
                 continue
             if nearest:
-                value = values[np.argmin(np.abs(values - value))]
+                # A run without this parameter has the value NaN, and is never the nearest.
+                distances = np.nan_to_num(np.abs(values - value), nan=np.inf)
+                value = values[np.argmin(distances)]
             matches |= np.isclose(values, value, rtol=EQUALITY_TOLERANCE, atol=0.0)
         return matches
 

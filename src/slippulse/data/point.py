@@ -35,7 +35,9 @@ def point(sweep: xr.Dataset, index: int = 0) -> xr.Dataset:
     """
     is_dataset = isinstance(sweep, xr.Dataset)
     is_sweep = is_dataset and ("point" in sweep.sizes or "run_flags" in sweep.variables)
-    check_that(is_sweep, "sweep", sweep, "a Dataset that run_sweep returned, or of results/data")
+    check_that(
+        is_sweep, "sweep", sweep, "a Dataset that run_sweep returned, or one of results/data"
+    )
     sweep = over_points(sweep)
     check_number("index", index, integer=True, at_least=0, at_most=sweep.sizes["point"] - 1)
     return next(islice(runs_in(sweep), index, None)).dataset()

@@ -126,7 +126,14 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     runs = _with_constants(without_index, axes)
     if len(axes) == 1:
         return runs.swap_dims(point=axes[0]).sortby(axes[0])
-    return runs.set_index(point=axes).unstack("point")
+    # `unstack` would drop runs with the value NaN, such as the width of no Gaussian. So the numbers
+    # of the values take the place of the values until the grid is made.
+    axis_coordinates = {}
+    for name in axes:
+        values, numbers = np.unique(runs[name].values, return_inverse=True)
+        axis_coordinates[name] = (name, values, runs[name].attrs)
+        runs = runs.assign_coords({name: ("point", numbers)})
+    return runs.set_index(point=axes).unstack("point").assign_coords(axis_coordinates)
 
 
 def _default_axes(sweep: xr.Dataset) -> list[str]:

@@ -35,7 +35,7 @@ VARIABLES |= {
     "stopped_because": "reason why the run ended",
     "steps": "number of time steps",
     "block_updates": "number of sliding blocks, summed over all time steps",
-    "event_updates": "number of changes of a block by releases and sticks",
+    "event_updates": "number of block updates at releases and sticks, summed over all events",
     "releases": "number of releases, summed over all blocks",
     "sticks": "number of sticks, summed over all blocks",
     "re_releases": "number of releases of a block that had slid before",

@@ -50,9 +50,10 @@ def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
 def _one_row_per_ratio(profile: pd.DataFrame) -> pd.DataFrame:
     """Return the fits with one row for each studied damping ratio.
 
-    Each reading has a column with its pull, and one with its independent pull, whose name begins
-    with INDEPENDENT_PREFIX. Independent pulls are combinations of pulls that are not correlated
-    with each other (see `independent_combinations`).
+    Each reading has a column with its pull, which is the deviation of the fit from the reading
+    divided by the reading error. A second column, whose name begins with INDEPENDENT_PREFIX, has a
+    combination of pulls that is not correlated with those of the other readings (see
+    `independent_combinations`).
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     independent = profile.pivot(

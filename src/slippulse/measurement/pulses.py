@@ -19,8 +19,8 @@ MIN_RELATIVE_PEAK = 0.05
 class LeadingPulse(NamedTuple):
     """The pulse behind the right front, at the end of a run.
 
-    All numbers except the front and its speed are NaN if an exact solution does not know slip
-    velocity everywhere on the right.
+    All numbers except the front, its speed and the number of pulses are NaN if an exact solution
+    does not know slip velocity everywhere on the right.
     """
 
     front: float  # distance from x = 0; it can lie between two blocks
@@ -29,7 +29,7 @@ class LeadingPulse(NamedTuple):
     peak_velocity: float = np.nan  # largest slip velocity, from a parabola through three blocks
     peak_distance: float = np.nan  # distance of the peak from x = 0
     slip: float = np.nan  # mean final slip over half a width behind the trailing edge, if any
-    pulses: int = 1  # number of pulses on the right; 0 if the front has stopped
+    pulses: int = 1  # number of pulses on the right; 0 if the front has stopped, 1 if not known
 
 
 def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
@@ -48,7 +48,7 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
         return LeadingPulse(front, speed)
     # The slices of the blocks in each pulse.
     pulses = [] if has_stopped else sliding_stretches(velocity)
-    # Slip velocity of the leading pulse alone, 0 everywhere if there is no pulse.
+    # Slip velocity of the leading pulse alone: it is 0 outside it, or everywhere without a pulse.
     leading_velocity = np.zeros(distance.size)
     if pulses:
         leading_velocity[pulses[-1]] = velocity[pulses[-1]]
@@ -121,17 +121,16 @@ def front_at_end(
 
 
 def sliding_stretches(velocity: np.ndarray) -> list[slice]:
-    """Return the pulses in a row of blocks: the slices of neighbouring blocks that slide.
+    """Return the pulses in a row of blocks: a slice for each stretch of blocks that slide.
 
     velocity : slip velocities of the blocks
 
-    The last stretch of sliding blocks is the leading pulse. Stretches that are much slower than it
-    are left out.
+    The last stretch is the leading pulse. Stretches that are much slower than it are left out.
     """
-    # The blocks at which sliding begins or ends, in turns: the first block of a stretch, and the
-    # first block after it.
+    # Between neighbouring blocks, sliding begins and ends in turns. Each stretch has the number of
+    # its first block, and the number of the first block after it.
     changes = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
-    stretches = list(map(slice, changes[0::2], changes[1::2]))
+    stretches = [slice(first, end) for first, end in zip(changes[0::2], changes[1::2], strict=True)]
     if not stretches:
         return []
     least_peak = MIN_RELATIVE_PEAK * np.max(velocity[stretches[-1]])

@@ -62,8 +62,8 @@ def slip_time(run: AnyRun, slip: float) -> float:
         return np.nan
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
     slips, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
+    # The first sample at which the slip is reached. The result of argmax is 0 if there is none.
     after = int(np.argmax(slips >= slip))
-    # The slip of the first sample is 0. If the first sample is found, the slip is never reached.
     if after == 0:
         return np.nan
     # The slip is interpolated between the samples before and after.

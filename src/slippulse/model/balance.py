@@ -137,7 +137,7 @@ def _balance_position(prestress: Prestress) -> float:
     while integral(prestress, lower, distance) > 0.0:
         lower *= 2.0
     if not integral(prestress, lower, distance) <= 0.0 <= integral(prestress, upper, distance):
-        raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
+        raise ArithmeticError("no balance position at x < 0 can be computed for this pre-stress")
     return root_to_last_bit(lambda x: integral(prestress, x, distance), lower, upper)
 
 
@@ -171,7 +171,7 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
         nucleation = float(x[tau >= min(1.0, float(tau.max()))][0])
     integral_from_right_end = integral(prestress, nucleation, distance)
     if not integral_from_right_end >= 0.0:
-        raise ArithmeticError("the pre-stress has no balance at x < 0 that can be computed")
+        raise ArithmeticError("no balance position at x < 0 can be computed for this pre-stress")
     for part in _parts_leftwards(prestress, nucleation):
         # A function of the position within this part.
         integral_from = partial(_integral_from, prestress, part, integral_from_right_end)

@@ -222,7 +222,7 @@ class Layer(LayerMaterial):
             check_number("width_in_metres", width_in_metres, above=0.0)
             width = self.convert_from_si(float(width_in_metres), "length")
         if peak_in_pascal is not None:
-            allowed = "none without width_in_metres, since there is then no Gaussian"
+            allowed = "none unless width_in_metres is given: without a width there is no Gaussian"
             check_that(width is not None, "peak_in_pascal", peak_in_pascal, allowed)
             peak = float(self.stress_from_pascal("peak_in_pascal", peak_in_pascal))
         return _Gaussian(width, peak)
@@ -266,7 +266,7 @@ class Layer(LayerMaterial):
         float
         """
         tau = float(self.stress_from_pascal(key, stress))
-        allowed = f"below static friction, {self.static_strength:g} Pa"
+        allowed = f"below static friction ({self.static_strength:g} Pa)"
         if tau >= 1.0 and key != "peak":
             raise ValueError(f"{key}: {stress:.6g} Pa; allowed: {allowed}")
         return tau
@@ -290,11 +290,11 @@ class Layer(LayerMaterial):
         array
         """
         tau = self.stress_from_pascal(key, stress)
-        allowed = f"below static friction, {self.static_strength:g} Pa"
+        allowed = f"below static friction ({self.static_strength:g} Pa)"
         if tau.min() >= 1.0:
             lowest = self.convert_to_si(float(tau.min()), "stress")
             everywhere = f"at least {lowest:g} Pa everywhere"
-            raise ValueError(f"{key}: {everywhere}; allowed: {allowed} somewhere")
+            raise ValueError(f"{key}: {everywhere}; allowed: somewhere {allowed}")
         for end, value in (("first", float(tau[0])), ("last", float(tau[-1]))):
             if value >= 1.0:
                 refused = self.convert_to_si(value, "stress")
@@ -315,8 +315,8 @@ class Layer(LayerMaterial):
             stress = self.convert_to_si(largest, "stress")
             reached = f"at most {stress:.9g} Pa at a block"
             allowed = (
-                f"static friction, {self.static_strength:g} Pa, somewhere, or a width_in_metres of"
-                " the Gaussian at x = 0 that starts the rupture"
+                f"at least static friction ({self.static_strength:g} Pa) at a block, or a"
+                " width_in_metres for a Gaussian at x = 0 that starts the rupture"
             )
             raise ValueError(f"prestress_in_pascal: {reached}; allowed: {allowed}")
 

@@ -123,7 +123,7 @@ class Prestress(ExplainsRemovedNames):
         allowed = "different positions, none of them 0 (see left, right)"
         check_that(are_distinct, "prestress.steps", positions, allowed)
         is_peak_allowed = self.width is not None or self.peak == 1.0
-        allowed = "1 without a width, since there is then no Gaussian"
+        allowed = "1 unless a width is given: without a width there is no Gaussian"
         check_that(is_peak_allowed, "prestress.peak", self.peak, allowed)
         if self.points:
             self._check_points()

@@ -98,7 +98,7 @@ def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -
             raise StressFileError(f"{path}: unit {short_repr(unit)} of {name}; allowed: {allowed}")
     for end, value in (("first", table.prestress[0]), ("last", table.prestress[-1])):
         if not value < 1.0:
-            allowed = "< 1, since it holds beyond the table"
+            allowed = "< 1, since the pre-stress keeps this value beyond the table"
             raise StressFileError(f"{path}: {end} prestress {value:.10g}; allowed: {allowed}")
     return table
 

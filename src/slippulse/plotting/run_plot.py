@@ -84,7 +84,7 @@ def _check_drawable(run: object) -> None:
         if not missing:
             return
         problem = f"without {', '.join(missing)}"
-        allowed = "a run with these, which a sweep has if record is ('fronts', 'fields')"
+        allowed = "a run with these; a sweep records them if record is ('fronts', 'fields')"
     raise TypeError(f"run: {problem}; allowed: {allowed}")
 
 

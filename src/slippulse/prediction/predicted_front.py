@@ -15,7 +15,7 @@ from .common import FAR_POSITIONS, far_level, rounded_damping_ratio, value_or_na
 # change the front speed.
 LAWS = ("coulomb", "linear_rate")
 # If gamma dx^2 is smaller than this, leaf springs hardly change the speed of a damped front. The
-# speed with leaf springs is then not computed, since that takes 14 ms for each run.
+# speed with leaf springs is then not computed, since that takes about 1 ms for each run.
 MIN_GAMMA_DX2 = 1e-3
 
 
@@ -70,8 +70,12 @@ def _lattice_speed(
 ) -> float:
     """Return the front speed on a lattice with leaf springs, into pre-stress of a level.
 
-    NaN without leaf springs, if they hardly change the speed, or if they are so strong that no
-    front outruns the waves.
+    The result is NaN
+
+    - without leaf springs (gamma = 0);
+    - with damping, if gamma dx^2 is below MIN_GAMMA_DX2. Without damping the speed has a closed
+      form, and is always computed;
+    - if leaf springs are so strong that no front outruns the waves.
     """
     if gamma == 0.0 or (damping_ratio > 0.0 and gamma * dx**2 < MIN_GAMMA_DX2):
         return np.nan

@@ -60,7 +60,7 @@ def simulate(
         If an argument has another type, or if a sample is later than the end. Also if the run may
         take days, or more memory than a small machine has; `run_sweep` accepts any cost.
     UnstableRun
-        If slip velocity is not finite or larger than the pre-stress can drive.
+        If slip velocity is not finite, or is larger than the pre-stress can drive.
     UnresolvedRun
         If the run is flagged and ``strict`` is true.
 
@@ -211,7 +211,7 @@ def _check_record(record: Sequence[str], samples: Sequence[Samples | None]) -> N
         return
     given_samples = [item for item in samples if item is not None]
     if len(given_samples) < len(samples):
-        allowed = "Samples for each scene, the second argument"
+        allowed = "Samples for each scene, as the second argument"
         raise ValueError(f"record: 'samples' without samples; allowed: {allowed}")
     shapes = {(item.times.shape, item.positions.shape) for item in given_samples}
     allowed = "equal numbers of times and positions for all scenes"

@@ -245,7 +245,7 @@ class Lattice:
         # same blocks have events again and again at one instant.
         shortest_step = taylor.SIMULTANEITY_TOLERANCE * limits.largest_step
         if status == arrays.BLOWN_UP:
-            reason = "slip velocity is not finite or larger than the pre-stress can drive"
+            reason = "slip velocity is not finite, or is larger than the pre-stress can drive"
         elif time_advanced < limits.max_steps * shortest_step:
             reason = (
                 "time no longer advances, since blocks stick and are released again and again at"

@@ -85,7 +85,7 @@ class LayerScene:
         largest = MAX_DAMPING_RATIO / self.cells
         allowed = f"a number <= {largest:.4g}, above which {self.cells} cells are unstable"
         check_that(self.beta * self.cells <= MAX_DAMPING_RATIO, "beta", self.beta, allowed)
-        allowed = "a symmetric scene, if the trail is finite"
+        allowed = "inf, unless the scene is symmetric"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)
         check_choice("top", self.top, ("held", "free"))
         check_choice("precision", self.precision, tuple(PRECISIONS))

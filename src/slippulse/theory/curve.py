@@ -311,10 +311,15 @@ class Curve:
     def _lowest_levels(self) -> tuple[list[np.ndarray], list[np.ndarray]]:
         """Levels from which `crossings` finds the panel on which a characteristic meets the curve.
 
-        For a characteristic that is traced to the right, the level of a panel is T + x at its right
-        end. If it is traced to the left, the level is T - x at the left end. For each panel, the
-        lowest level of this panel and of all panels beyond it is computed (`_lowest_level_beyond`),
-        first for the right and then for the left.
+        A characteristic that is traced to the right meets the curve where T + x rises to its value
+        eta for the last time. From there on T + x is not below eta. So the crossing is on the first
+        panel for which T + x is at least eta at the right ends of this panel and of all panels
+        beyond it. To find this panel, the lowest T + x at these ends is computed for each panel.
+        These levels are in ascending order, and can be searched by bisection. For a characteristic
+        to the left the same is done with T - x at the left ends.
+
+        The first result is for the right, and the second one for the left. Each has one array for
+        each region between restarts (`_lowest_level_beyond`).
         """
         left_end, right_end = 0, 1
         t_plus_x = self.time_ends[:, right_end] + self.x_ends[:, right_end]

@@ -13,14 +13,14 @@ from .front_speeds import front_speed, front_speed_undamped
 from .pulse import steady_pulse
 
 PEAK_VELOCITY_NOTE = (
-    "The paper prints the strength drop divided by sqrt(2 G rho). This is half of the value that"
-    " follows with its own unit of slip under held displacement,"
-    " 2 H (mu_s - mu_k) sigma_n/(lambda + 2G). The printed value follows with the unit of slip"
-    " under held stress: it is the peak velocity of the mean slip over the height."
+    "The paper prints the strength drop divided by sqrt(2 G rho). With its own unit of slip under"
+    " held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G), the value is twice as large. The"
+    " printed value follows with the unit of slip under held stress. It is the peak velocity of the"
+    " slip averaged over the height."
 )
 STRESS_DROP_NOTE = (
     "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop. By its equation"
-    " (C13), stress falls by twice the initial stress above kinetic friction."
+    " (C13), stress falls by twice the amount by which the initial stress exceeds kinetic friction."
 )
 TRANSITION_NOTE = (
     "The paper neglects the elastic coupling. The exact value is that of a rupture that starts at a"

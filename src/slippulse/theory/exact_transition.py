@@ -49,7 +49,7 @@ def exact_transition_displacement(
     level = float(prestress.level(np.asarray(1e300)))
     if not prestress.symmetric or level <= 0.0:
         allowed = "equal levels > 0 on both sides"
-        raise ValueError(f"prestress: not symmetric and positive; allowed: {allowed}")
+        raise ValueError(f"prestress: not symmetric, or not positive far away; allowed: {allowed}")
     gamma = float(gamma)
     fronts_up_to = partial(
         fast_fronts, prestress, damping_ratio=damping_ratio, release=release, gamma=gamma

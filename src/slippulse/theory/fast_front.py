@@ -238,8 +238,9 @@ class FastFront:
         longest = self.max_panel_length(background)
         return ValueError(
             f"prestress: level {background.right_value!r} over a distance of {distance:g}, where"
-            f" the path of the front takes more than {MAX_PANELS} panels of a length of at most"
-            f" {longest:.3g} (gamma = {self.gamma:g}, damping_ratio = {self.damping_ratio:g});"
+            f" the path of the front takes more than {MAX_PANELS} panels, since each panel may be"
+            f" at most {longest:.3g} long (gamma = {self.gamma:g}, damping_ratio ="
+            f" {self.damping_ratio:g});"
             f" allowed: paths that take at most {MAX_PANELS} panels"
         )
 

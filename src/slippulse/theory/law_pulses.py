@@ -238,7 +238,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         upper *= SPEED_FACTOR
     if not MIN_SPEED < upper < MAX_SPEED:
         values = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
-        allowed = f"values with a steady rupture of a speed from {MIN_SPEED} to {MAX_SPEED}"
+        allowed = f"values with a steady rupture at a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
     speed = root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
     zone_end, slip_beyond_zone = _zone_and_slip_beyond(

@@ -414,17 +414,17 @@ class SlowFront:
         last_s = max(entry.s - next_length, -1.0)
         # The chunk, and how often its end has been moved to an event.
         chunk, move_count = Chunk(entry.panel, entry.s, last_s), 0
+        is_far_from_mark = mark - self.x0 >= MARK_DISTANCE * self.size
         for _ in range(MAX_CHUNKS):
             if chunk.start - chunk.stop < MIN_CHUNK:
                 # The front can go on only if it is very close to the mark.
                 return self.straight_to_mark(mark)
             x = self.solve(chunk)
-            if x is not None and _runs_back(x):
-                if mark - self.x0 >= MARK_DISTANCE * self.size:
-                    return Advance(None, "stops")
-                # This close to a mark the front may run back only because of rounding.
-                x = None
-            if x is None:
+            runs_back = x is not None and _runs_back(x)
+            if runs_back and is_far_from_mark:
+                return Advance(None, "stops")
+            # Close to a mark the front may run back only because of rounding.
+            if x is None or runs_back:
                 chunk, move_count = chunk.half(), 0
                 continue
             event = _first_event(x, mark, end_was_moved=move_count > 0)
@@ -467,34 +467,37 @@ class SlowFront:
 
         It follows the last entry, at the position last_entry_x, along the curve from right to left.
         Entries are skipped as long as all of them together move the front by no more than the
-        fraction ``negligible`` of the size of the rupture. NO_ENTRY is returned if no entry moves
-        the front on, and None if the wave comes from beyond the left end of the curve.
+        fraction ``negligible`` of the size of the rupture. NO_ENTRY is returned if the entries
+        after the skipped ones move the front back, or if all further entries are skipped. None is
+        returned if the wave comes from beyond the left end of the curve.
         """
         # The entry could also be found from its value of T - x. But where the pre-stress is nearly
         # 0, T - x is constant to rounding, and the search would fail.
-        entry = self.entry_left_of(last_entry_x)
-        skipped_motion, has_skipped = 0.0, False
-        # The panels are examined one after another, up to the first panel of the slow front itself.
-        # An entry behind such a panel is found in another way.
-        while entry.panel >= 0 and not self.is_slow_to_right(entry.panel):
-            skipped = self.entries_to_skip(entry, skipped_motion, negligible)
+        first = self.entry_left_of(last_entry_x)
+        # The last entry was the left end of the curve.
+        if first.panel < 0:
+            return None
+        skipped_motion, s = 0.0, first.s
+        for panel in range(first.panel, -1, -1):
+            # If the slow front itself made this panel, the entry is found in another way.
+            if self.is_slow_to_right(panel):
+                return self.entry_behind_slow_front()
+            skipped = self.entries_to_skip(Entry(panel, s), skipped_motion, negligible)
             skipped_motion = skipped.total_motion
-            has_skipped = has_skipped or skipped.skips_any
-            if skipped.skips_all:
-                # Go on from the right end of the next panel on the left.
-                entry = Entry(entry.panel - 1, 1.0)
-            elif not has_skipped:
-                return Entry(int(entry.panel), skipped.last_s)
-            elif not skipped.next_moves_on:
-                # The entries after the skipped ones would move the front back.
-                return NO_ENTRY
-            else:
+            if not skipped.skips_all:
+                # On a later panel, all entries of the panels before it have been skipped.
+                has_skipped = skipped.skips_any or panel < first.panel
+                if not has_skipped:
+                    return first
+                if not skipped.next_moves_on:
+                    # The entries after the skipped ones would move the front back.
+                    return NO_ENTRY
                 # The motion must be positive, since a motion of 0 means that nothing was skipped.
                 min_motion = 0.1 * ROUNDING_MOTION * self.size
-                return Entry(int(entry.panel), skipped.last_s, max(skipped_motion, min_motion))
-        if entry.panel >= 0:
-            return self.entry_behind_slow_front()
-        return NO_ENTRY if has_skipped else None
+                return Entry(panel, skipped.last_s, max(skipped_motion, min_motion))
+            # The next panel is examined from its right end.
+            s = 1.0
+        return NO_ENTRY
 
     def entry_left_of(self, last_entry_x: float) -> Entry:
         """Return the point of the curve that follows the last entry on its left.
@@ -507,7 +510,9 @@ class SlowFront:
         (panel,), (s,) = self.curve.locate(np.array([last_entry_x]))
         # If nearly nothing of the panel is left, from s down to its left end at -1, the next panel
         # is used. Such a small remainder cannot be resolved.
-        return Entry(panel, s) if s + 1.0 >= MIN_REMAINDER else Entry(panel - 1, s=1.0)
+        if s + 1.0 < MIN_REMAINDER:
+            return Entry(int(panel) - 1, s=1.0)
+        return Entry(int(panel), float(s))
 
     def entries_to_skip(
         self, entry: Entry, skipped_motion: float, negligible: float

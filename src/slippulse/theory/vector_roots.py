@@ -31,8 +31,8 @@ def roots_between(
     interpolation or by bisection.
     """
     if np.any(at_lower * at_upper > 0.0):
-        bounds = "bounds at which a function has values of equal signs"
-        raise ValueError(f"lower, upper: {bounds}; allowed: bounds with different signs")
+        problem = "a function has the same sign at both bounds"
+        raise ValueError(f"lower, upper: {problem}; allowed: bounds with different signs")
     # x1 is the newest end of the bracket, x2 the other end, and x3 the former end that x1 has
     # replaced. f1, f2 and f3 are the values there.
     x1, f1 = lower, at_lower

@@ -104,22 +104,24 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
     single change with the largest effect.
     """
-    all_changes = changes(combinations)
-    smallest_deciding: dict[str, Change] = {}
-    for change in sorted(all_changes, key=attrgetter("size")):
-        holds_before, holds_after = change.before.result["holds"], change.after.result["holds"]
-        if holds_before is True and holds_after is False:
-            smallest_deciding.setdefault(change.name, change)
     # Changes between exact solutions rank above those between lattices, and larger changes above
     # smaller ones.
     rank = attrgetter("exact", "size")
-    largest_by_choice: dict[str, Change] = {}
-    for change in sorted(all_changes, key=rank):
-        # This change ranks above the earlier ones of the same choice, and replaces them.
-        largest_by_choice[change.name] = change
+    ranked = sorted(changes(combinations), key=rank)
+    # The dictionary keeps the last change of each choice, which ranks highest.
+    largest_by_choice = {change.name: change for change in ranked}
     largest_first = sorted(largest_by_choice.values(), key=rank)[::-1]
-    names = [change.name for change in largest_first]
-    decisive = [smallest_deciding[name] for name in names if name in smallest_deciding]
+    decisive = []
+    for largest in largest_first:
+        changes_to_failure = [
+            change
+            for change in ranked
+            if change.name == largest.name
+            and change.before.result["holds"] is True
+            and change.after.result["holds"] is False
+        ]
+        if changes_to_failure:
+            decisive.append(min(changes_to_failure, key=attrgetter("size")))
     return decisive or largest_first[:1]
 
 
@@ -168,19 +170,20 @@ class OverChoices(Claim):
         choice_names : names of the choices in sentences
         settings : the choices, in words, of the first combination whose verdict has a caveat, or of
             the first combination if none has
-        unsure : the template values of the claim at this combination
+        unsure : the template values of the result at this combination
         """
-        results = [combination.result for combination in self.combinations]
-        at_last_release = [
-            combination.result["deviation"]
-            for combination in self.combinations
-            if combination.fraction == LAST_RELEASE_FRACTION
-        ]
-        with_caveat = [
-            combination
-            for combination in self.combinations
-            if combination.result["verdict"] == rules.CAVEAT
-        ]
+        holding, failing = [], []
+        at_last_release, with_caveat = [], []
+        for combination in self.combinations:
+            result = combination.result
+            if result["holds"] is True:
+                holding.append(result["deviation"])
+            if result["holds"] is False:
+                failing.append(result["deviation"])
+            if combination.fraction == LAST_RELEASE_FRACTION and result["deviation"] is not None:
+                at_last_release.append(result["deviation"])
+            if result["verdict"] == rules.CAVEAT:
+                with_caveat.append(combination)
         in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
         settings = [
             f"{CHOICE_WORDS[name]} {text_of_value(value)}"
@@ -188,9 +191,9 @@ class OverChoices(Claim):
             if name in CHOICE_WORDS
         ]
         return self.shown.template_values | {
-            "holding": [result["deviation"] for result in results if result["holds"] is True],
-            "failing": [result["deviation"] for result in results if result["holds"] is False],
-            "last": [deviation for deviation in at_last_release if deviation is not None],
+            "holding": holding,
+            "failing": failing,
+            "last": at_last_release,
             "changes": self.decisive,
             "choice_names": CHOICE_WORDS,
             "settings": settings,

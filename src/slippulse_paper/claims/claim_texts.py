@@ -12,7 +12,7 @@ from ..configuration.problems import spelling_hint
 REASONS = {
     "tested": "tested by a claim",
     "repeats": "repeats another sentence",
-    "background": "background, or says no more than that something is shown",
+    "background": "background, or only says that something is shown",
     "definition": "definition or assumption",
     "other work": "is about other work",
     "no model": "no model of this project can decide it",

@@ -150,14 +150,14 @@ class Evidence:
         finest, coarser = self.tables[simulation], self.tables[f"coarser/{simulation}"]
         # The grid study has one row for each run (point) and quantity. Turn it into one row for
         # each run.
-        grid_study_rows = self.tables[f"uncertainties/{simulation}"]
-        by_run = grid_study_rows.set_index(["point", "quantity"])
-        by_run = by_run[["extrapolated", "uncertainty"]].unstack()
-        by_run.columns = ["_".join(column) for column in by_run.columns]
+        by_run = self.tables[f"uncertainties/{simulation}"].pivot(
+            index="point", columns="quantity", values=["extrapolated", "uncertainty"]
+        )
+        by_run.columns = [f"{number}_{quantity}" for number, quantity in by_run.columns]
         tables = [finest.join(by_run)]
         # Predictions are the same on all lattices, but only the table of the finest has them.
         predictions = finest[finest.columns.difference(coarser.columns)]
-        # The factor is the block spacing divided by that of the finest lattice.
+        # The column factor has the block spacing divided by that of the finest lattice.
         for _, runs_of_lattice in coarser.groupby("factor"):
             tables.append(runs_of_lattice.reset_index(drop=True).join(predictions))
         # If a run is flagged on the finest lattice, its numbers do not describe the model.

@@ -47,6 +47,7 @@ def all_numbers(
 
     The result is empty if a changed configuration has no runs for some of the numbers.
 
+    damping_ratio : damping ratio of the figures, which expressions may use
     expression_groups : arguments of `numbers`, one mapping for each table
     """
     values: dict[str, float] = {}
@@ -91,7 +92,7 @@ def collapse(evidence: Evidence) -> dict[str, float]:
     values: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
         table = evidence.finest(f"damping_{boundary}").fillna({"gamma": 0.0})
-        table = table.set_index(["left", "width", "gamma", "damping_ratio"])
+        table = table.set_index(["left", "width", "gamma", "release", "dx", "damping_ratio"])
         # One row for each scene, and one column for each damping ratio, in ascending order.
         lengths = table["transition_length"].unstack()
         if lengths.empty:
@@ -147,6 +148,7 @@ def backward_threshold(evidence: Evidence) -> dict[str, float]:
     """
     columns = ["min_stuck_stress", "friction_ratio_needed"]
     runs = pd.concat([evidence.tables[name][columns] for name in evidence.swept])
+    # By this threshold, a stuck block slides back as soon as its stress is -1.
     slides_back = runs["min_stuck_stress"] <= -1.0
     return {
         "back": float(slides_back.sum()),

@@ -1,6 +1,8 @@
 """Judge claims about other friction laws, and about the lattice of Burridge and Knopoff.
 
-Each function takes the evidence and the id of its claim, and returns the result.
+Each function takes the evidence and the id of its claim, and returns the result. A result with
+``condition=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. Its
+`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 import numpy as np
@@ -72,7 +74,7 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     further["left out, since blocks would slide back"] = float(slides_back.sum())
     stopped = len(other_laws) - len(ruptures)
     further["left out, since fracture energy stops them"] = float(stopped)
-    # The condition is that only some friction laws were tested.
+    # The caveat is that only some friction laws were tested.
     return Qualitative(decided=regimes != "crack", condition=True, further=further)
 
 
@@ -82,6 +84,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     It decays if its largest velocity falls by more than the tolerance, on the finest and on the
     coarsest lattice. Each value of the rate strengthening counts as one run.
     """
+    # The largest velocity at several times, for each rate strengthening and spacing dx.
     table = evidence.tables["rate_dependence"].query("role == 'arrest'")
     # Without rate strengthening the pulse is steady from this time on.
     late = table[table["time"] >= 0.1 * table["time"].max()]
@@ -92,12 +95,13 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     with_strengthening = decays[decays.index > 0.0]
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     steady_count_by_spacing = (~with_strengthening).sum()
-    words = "laws, by their strengthening, that leave a steady pulse"
-    # The condition is that only one friction law was tested.
+    steady_count = float(steady_count_by_spacing.max())
+    words = "number of rate strengthenings under which a pulse stays steady"
+    # The caveat is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),
         condition=True,
-        further={words: float(steady_count_by_spacing.max())},
+        further={words: steady_count},
     )
 
 
@@ -133,7 +137,7 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
         # The paper's formula at constant friction, without damping.
         "undamped": 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2),
     }
-    # The condition is that only one friction law was tested.
+    # The caveat is that only one friction law was tested.
     return Qualitative(
         decided=is_changed.to_numpy().ravel(),
         condition=True,

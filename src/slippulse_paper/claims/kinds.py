@@ -191,7 +191,7 @@ class Equation(Claim):
         return rules.worst_tested(self.verdicts(tolerance))
 
     def fields(self) -> dict[str, Any]:
-        """Return the numbers of the worst run, and how many runs have numbers.
+        """Return the numbers of the worst run, how many runs have numbers, and ``counts``.
 
         Of all runs with the worst verdict, the worst run is the one with the largest deviation.
         """

@@ -4,7 +4,8 @@ The table `layer` has one row for each run, grid and station. A station is a pos
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
 The column part names a group of runs; `studies.layer.table` describes all of them. The part far has
 the same pulses as the part pulse, farther away and on two grids. A function that judges a claim
-takes the evidence and the id of the claim, and returns the result.
+takes the evidence and the id of the claim, and returns the result. Its `further` numbers are shown
+in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Callable
@@ -24,6 +25,9 @@ CONVERGED_QUANTITIES = ("speed", "pulse_width", "pulse_slip")
 # Columns that identify a run within its part. The side is LEFT or RIGHT.
 RUN_COLUMNS = ["gamma", "tau0", "weakening", "coupling", "side"]
 LEFT, RIGHT = -1.0, 1.0
+# Stations, counted from the last one.
+LAST, SECOND_LAST = 0, 1
+THIRD_LAST = 2
 # Pulses with a smaller fracture energy, divided by the energy that the layer releases, are brittle.
 BRITTLE_ENERGY = 0.4
 # The paper's transition time, pi/sqrt(gamma), divided by the time in which a shear wave runs to the
@@ -34,13 +38,10 @@ CROSSINGS_OF_TRANSITION = np.pi / np.sqrt(8.0)
 RESOLVED_CELLS = 2.0
 
 
-def rows_at_station(evidence: Evidence, before_last: int = 0) -> pd.DataFrame:
-    """Return the rows of all runs and grids at one station.
-
-    before_last : 0 for the last station, 1 for the second last, and so on
-    """
+def rows_at_station(evidence: Evidence, station: int) -> pd.DataFrame:
+    """Return the rows of all runs and grids at one station: LAST, SECOND_LAST or THIRD_LAST."""
     rows = evidence.tables["layer"].query("part not in ('field', 'step', 'patch')")
-    return rows[rows["station"] == rows["station"].max() - before_last]
+    return rows[rows["station"] == rows["station"].max() - station]
 
 
 def finest_rows(rows: pd.DataFrame, part: str, coarser: int = 0) -> pd.DataFrame:
@@ -65,20 +66,24 @@ def change_by_refinement(rows: pd.DataFrame, part: str, quantity: str) -> pd.Ser
     return (on_finest / on_second_finest - 1.0).abs()
 
 
-def change_with_distance(evidence: Evidence, quantity: str, before_last: int = 1) -> pd.Series:
+def change_with_distance(evidence: Evidence, quantity: str, earlier_station: int) -> pd.Series:
     """Return the relative change of a quantity from an earlier station to the last one.
 
     There is one value for each pulse of the part far.
 
-    before_last : 1 if the earlier station is the second last, and so on
+    earlier_station : SECOND_LAST or THIRD_LAST
     """
-    last = finest_rows(rows_at_station(evidence), "far")[quantity]
-    earlier = finest_rows(rows_at_station(evidence, before_last), "far")[quantity]
+    last = finest_rows(rows_at_station(evidence, LAST), "far")[quantity]
+    earlier = finest_rows(rows_at_station(evidence, earlier_station), "far")[quantity]
     return (last / earlier - 1.0).abs()
 
 
 def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
-    """Return the sliding time divided by the time that a shear front needs to cross the layer."""
+    """Return the sliding time divided by the crossing time.
+
+    The crossing time passes between the arrival of the front and that of shear waves from the top.
+    Both times are widths divided by the front speed, which cancels.
+    """
     return pulses["pulse_width"] / crossing_width(pulses)
 
 
@@ -98,7 +103,7 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 
     Each pulse of the part pulse is judged far away, by the same pulse of the part far.
     """
-    pulses = finest_rows(rows_at_station(evidence), "pulse")
+    pulses = finest_rows(rows_at_station(evidence, LAST), "pulse")
     decided = steady_on_two_grids(evidence, "far", evidence.tolerance(id))
     # The part far has one more pulse, which belongs to the part step.
     decided = decided[decided.index.isin(pulses.index)]
@@ -112,20 +117,22 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
     The column coupling has the strength of this dependence.
     """
     decided = steady_on_two_grids(evidence, "coupled", evidence.tolerance(id))
-    coupled = finest_rows(rows_at_station(evidence), "coupled")
-    # A pulse that is undecided (None) is in neither group.
-    steady = coupled[decided.eq(True)]
-    failed = coupled[decided.eq(False)]
+    coupled = finest_rows(rows_at_station(evidence, LAST), "coupled")
+    # A pulse that is undecided (None) is in neither group. The index has the parameters of the
+    # pulses, which become columns.
+    steady = coupled[decided.eq(True)].reset_index()
+    failed = coupled[decided.eq(False)].reset_index()
+    coupled = coupled.reset_index()
     return Qualitative(
         decided=list(decided),
         template_values={
-            "steady_right": float((steady.index.get_level_values("side") > 0).sum()),
-            "steady_left": float((steady.index.get_level_values("side") < 0).sum()),
-            "steady_to": float(steady.index.get_level_values("coupling").max()),
-            "failed_from": float(failed.index.get_level_values("coupling").min()),
-            "failed_sides": float(failed.index.get_level_values("side").nunique()),
-            "weakest": float(coupled.index.get_level_values("coupling").min()),
-            "strongest": float(coupled.index.get_level_values("coupling").max()),
+            "steady_right": float((steady["side"] == RIGHT).sum()),
+            "steady_left": float((steady["side"] == LEFT).sum()),
+            "steady_to": float(steady["coupling"].max()),
+            "failed_from": float(failed["coupling"].min()),
+            "failed_sides": float(failed["side"].nunique()),
+            "weakest": float(coupled["coupling"].min()),
+            "strongest": float(coupled["coupling"].max()),
             "split_low": float(coupled["split_position"].min()),
             "split_high": float(coupled["split_position"].max()),
         },
@@ -137,24 +144,30 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
 
     A crossing is the time that a shear front needs to cross the layer.
     """
-    rows = rows_at_station(evidence)
+    rows = rows_at_station(evidence, LAST)
     free, held = finest_rows(rows, "free"), finest_rows(rows, "held")
-    ratio, held_ratio = sliding_in_crossings(free), sliding_in_crossings(held)
+    # The sliding time of each pulse, in crossings.
+    crossings, held_crossings = sliding_in_crossings(free), sliding_in_crossings(held)
     longer = times_longer_with_free_top(rows)
-    deviations = (ratio - 1.0).abs()
-    uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * ratio).max())
+    deviations = (crossings - 1.0).abs()
+    # The uncertainty is the largest change of a run from the second finest to the finest grid.
+    uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
-        ratio=Uncertain(float(ratio.median()), uncertainty),
+        ratio=Uncertain(float(crossings.median()), uncertainty),
         further={
-            "crossing times, top free to rise: least": float(ratio.min()),
-            "crossing times, top free to rise: most": float(ratio.max()),
-            "crossing times of the same pulses, top held: least": float(held_ratio.min()),
-            "crossing times of the same pulses, top held: most": float(held_ratio.max()),
-            "sliding time, top free to rise, divided by top held: least": float(longer.min()),
-            "sliding time, top free to rise, divided by top held: most": float(longer.max()),
+            "sliding time in crossing times, top free to rise: smallest": float(crossings.min()),
+            "sliding time in crossing times, top free to rise: largest": float(crossings.max()),
+            "sliding time in crossing times, top held: smallest": float(held_crossings.min()),
+            "sliding time in crossing times, top held: largest": float(held_crossings.max()),
+            "sliding time with free top divided by that with held top: smallest": float(
+                longer.min()
+            ),
+            "sliding time with free top divided by that with held top: largest": float(
+                longer.max()
+            ),
         },
     )
 
@@ -173,7 +186,7 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     """
     is_crack = on_two_grids(lambda coarser: never_sticks(evidence, coarser))
     is_stopped = on_two_grids(lambda coarser: stops_on_one_side(evidence, coarser))
-    rows = rows_at_station(evidence)
+    rows = rows_at_station(evidence, LAST)
     left_fronts = finest_rows(rows, "barrier").xs(LEFT, level="side")
     # The final front position on the left is negative.
     relative_path = -left_fronts["end"] / left_fronts["balance_distance"]
@@ -211,7 +224,10 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 
     part : far, damped or coupled
     """
-    at_last, at_second_last = rows_at_station(evidence), rows_at_station(evidence, before_last=1)
+    at_last, at_second_last = (
+        rows_at_station(evidence, LAST),
+        rows_at_station(evidence, SECOND_LAST),
+    )
     compared = ["speed", "pulse_slip"]
     is_steady_on_grids = []
     for coarser in (0, 1):
@@ -238,7 +254,7 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     is_narrow : True at the largest gamma, at which pulses are narrowest
     is_steady : True if `steady_on_two_grids` is True at this tolerance
     """
-    rows = rows_at_station(evidence)
+    rows = rows_at_station(evidence, LAST)
     followed = finest_rows(rows, "far")
     unit = followed["sample_position"] / followed["sample_position"].min()
     on_second_finest = finest_rows(rows, "far", coarser=1).reindex(followed.index)
@@ -258,20 +274,22 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
 
     pulses, followed, split : number of pulses of the part pulse, of those that were followed in the
         part far, and of those that split
-    distance, near_distance : position of the last station of the parts far and pulse, at the
-        largest gamma
+    near_distance, distance : distance over which the pulses of the parts pulse and far were
+        followed, at the largest gamma
     narrow_..., wide_... : of pulses that split at the largest gamma, and at a smaller gamma
     split_..., coarse_split_... : range of the positions in `followed_pulses`, at the largest gamma
-    step_... : of the pulse of the part step, which was followed, too, but is not counted
+    step_... : of one pulse that belongs to the part step; the part far has it, too, but it is not
+        counted
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
     unresolved... : of steady pulses with less than RESOLVED_CELLS cells in the length gamma d_c
 
     tolerance : see `steady_on_two_grids`
     """
-    pulses = finest_rows(rows_at_station(evidence), "pulse")
+    pulses = finest_rows(rows_at_station(evidence, LAST), "pulse")
     followed = followed_pulses(evidence, tolerance)
     is_counted = followed.index.isin(pulses.index)
-    counted, step = followed[is_counted], followed[~is_counted]
+    # The parameters of the pulses become columns.
+    counted, step = followed[is_counted].reset_index(), followed[~is_counted]
     split = counted[counted["split_at"].notna()]
     narrow, wide = split[split["is_narrow"]], split[~split["is_narrow"]]
     steady = counted[counted["is_steady"]]
@@ -281,13 +299,13 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
         "pulses": float(len(pulses)),
         "followed": float(len(counted)),
         "split": float(len(split)),
-        "narrow_gamma": float(narrow.index.get_level_values("gamma").max()),
+        "narrow_gamma": float(narrow["gamma"].max()),
         "narrow_energy": float(narrow["fracture_energy"].max()),
         "split_low": float(narrow["split_at"].min()),
         "split_high": float(narrow["split_at"].max()),
         "coarse_split_low": float(narrow["coarse_split_at"].min()),
         "coarse_split_high": float(narrow["coarse_split_at"].max()),
-        "wide_gamma": float(wide.index.get_level_values("gamma").max()),
+        "wide_gamma": float(wide["gamma"].max()),
         "wide_energy": float(wide["fracture_energy"].max()),
         "wide_split_low": float(wide["split_at"].min()),
         "wide_split_high": float(wide["split_at"].max()),
@@ -300,7 +318,7 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
         "near_distance": float(pulses["sample_position"].min()),
         "resolved_cells": RESOLVED_CELLS,
         "unresolved": float(len(unresolved)),
-        "unresolved_gamma": float(unresolved.index.get_level_values("gamma").max()),
+        "unresolved_gamma": float(unresolved["gamma"].max()),
         "unresolved_energy": float(unresolved["fracture_energy"].max()),
         "unresolved_cells": float(unresolved["cells_in_weakening"].min()),
     }
@@ -309,9 +327,9 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
 def never_sticks(evidence: Evidence, coarser: int) -> pd.Series:
     """Return for each rupture in uniform pre-stress whether it never sticks.
 
-    coarser : see `finest_rows`
+    coarser : 0 for the finest grid, 1 for the second finest
     """
-    cracks = finest_rows(rows_at_station(evidence), "crack", coarser)
+    cracks = finest_rows(rows_at_station(evidence, LAST), "crack", coarser)
     return ~np.isfinite(cracks["first_stick"])
 
 
@@ -321,11 +339,12 @@ def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
     The left front must stop before the balance position. On the right there must be a pulse, which
     must have passed the second last station by the end.
 
-    coarser : see `finest_rows`
+    coarser : 0 for the finest grid, 1 for the second finest
     """
-    at_last = finest_rows(rows_at_station(evidence), "barrier", coarser)
-    at_second_last = finest_rows(rows_at_station(evidence, before_last=1), "barrier", coarser)
+    at_last = finest_rows(rows_at_station(evidence, LAST), "barrier", coarser)
+    at_second_last = finest_rows(rows_at_station(evidence, SECOND_LAST), "barrier", coarser)
     left, right = at_last.xs(LEFT, level="side"), at_second_last.xs(RIGHT, level="side")
+    # The final position of the left front is negative.
     has_stopped = left["end"] > -left["balance_distance"]
     # A pulse has no width at a station that it has not passed.
     return has_stopped & np.isfinite(right["pulse_width"])
@@ -333,7 +352,7 @@ def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
     """Compare the pulse width in two dimensions with the paper's formula."""
-    rows = rows_at_station(evidence)
+    rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
@@ -351,10 +370,10 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
         # The paper makes no claim about two dimensions.
         failing=rules.BEYOND,
         further={
-            "median in the plane, divided by the formula: speed": float(speed_ratio.median()),
-            "median in the plane, divided by the formula: pulse slip": float(slip_ratio.median()),
-            "narrowest in the plane, divided by the formula": float(ratio.min()),
-            "widest in the plane": float(ratio.max()),
+            "front speed divided by the formula: median": float(speed_ratio.median()),
+            "pulse slip divided by the formula: median": float(slip_ratio.median()),
+            "pulse width divided by the formula: smallest": float(ratio.min()),
+            "pulse width divided by the formula: largest": float(ratio.max()),
         },
         template_values={
             "least": float(energies.min()),
@@ -379,27 +398,26 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     points = points.assign(outcome=points["outcome"].where(agrees, "grids differ"))
     brittle = points[points["fracture_energy"] < 1.0]
     tough = points[points["fracture_energy"] > 1.0]
+    # The answer is None for outcomes that leave it open.
+    decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
     # These outcomes are reported even if no point has them.
     further = {f"points that are {outcome}": 0.0 for outcome in ("steady", "growing", "dying")}
     for outcome, count in points["outcome"].value_counts().items():
         further[f"points that are {outcome}"] = float(count)
     tough_and_dying = (tough["outcome"] == "dying").sum()
     further["dying with more fracture energy than can be released"] = float(tough_and_dying)
-    decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
     has_settled = max(differences) < evidence.tolerance(id)
     on_map = map_numbers(evidence)
+    template_values: dict[str, float] = step | on_map
+    template_values["elasticity_ratios"] = float(brittle["gamma"].nunique())
+    template_values["has_settled"] = has_settled
     return Qualitative(
         decided=decided,
         condition=not has_settled or on_map["splitting_points"] > 0.0,
         further=further,
-        template_values=step
-        | on_map
-        | {
-            "elasticity_ratios": float(brittle["gamma"].nunique()),
-            "has_settled": has_settled,
-        },
+        template_values=template_values,
     )
 
 
@@ -419,12 +437,13 @@ def map_numbers(evidence: Evidence) -> dict[str, float]:
     at_largest_gamma = points.loc[points["gamma"].idxmax()]
     conditions = ("level_below", "level_above", "step_position", "last_position", "coarse_cells")
     numbers = {name: float(at_largest_gamma[name]) for name in (*conditions, "cells")}
-    far = rows_at_station(evidence).query("part == 'far'").dropna(subset=["split_position"])
+    far = rows_at_station(evidence, LAST).query("part == 'far'").dropna(subset=["split_position"])
     positions = []
     for point in points[points["fracture_energy"] < 1.0].itertuples():
         is_alike = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
         split = far[is_alike & (far["fracture_energy"] >= point.fracture_energy)]
         if len(split):
+            # The unit of distances at this gamma, in units of H.
             unit = point.step_position / numbers["step_position"]
             positions.append(float(split["split_position"].min()) / unit)
     return numbers | {
@@ -442,11 +461,10 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     finest grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers`, `across_a_step`
     and `map_numbers` (map_NAME).
     """
-    rows = rows_at_station(evidence)
+    rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
     varied = with_varied_energy(pulses)
     thinnest = with_smallest_gamma(varied)
-    patch = finest_rows(evidence.tables["layer"], "patch")
     numbers = {
         "pulses": float(len(pulses)),
         "level": float(varied.index.get_level_values("tau0")[0]),
@@ -457,6 +475,9 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
     }
     quantities = pulse_quantities(pulses)
+    # The time of the first stick, divided by the time in which a shear wave runs to the top and
+    # back. The part patch has short runs, until the region in which the rupture starts has stuck.
+    patch = finest_rows(evidence.tables["layer"], "patch")
     quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
     quantities["free"] = sliding_in_crossings(finest_rows(rows, "free"))
     quantities["longer"] = times_longer_with_free_top(rows)
@@ -487,19 +508,28 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
 def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     """Return quantities of pulses by name, each with one value for each pulse.
 
-    width : width by the paper's formula divided by the pulse width
-    slip : pulse slip divided by the slip by the formula
-    brittle_... : for pulses with the smallest fracture energy
-    line_... : for pulses in one dimension with the same friction; width and slip are divided by
-        those by the formulas
-    wider : pulse width divided by the width in one dimension
-    less_damped : width in one dimension divided by the one with more damping
-    crossing : pulse width divided by `crossing_width`; brittle_crossing for all fracture energies
-        below BRITTLE_ENERGY
-    sliding : time for which a point slides, divided by the time in which a shear wave crosses the
-        layer
+    These are for all pulses:
+
+    gamma, tau0 : elasticity ratio, and level of the pre-stress
+    wider : pulse width divided by the width in one dimension with the same friction and with
+        damping
+    crossing : sliding time divided by the crossing time (`sliding_in_crossings`)
+    sliding : sliding time divided by H/c_s, where c_s is the shear wave speed
     slip_over_bound : slip divided by the largest slip that the energy balance allows
     waves : fraction of the released energy that leaves as waves
+
+    The others are for the pulses of `with_varied_energy`:
+
+    energy, speed : fracture energy, and front speed
+    width : width by the paper's formula divided by the pulse width
+    slip : slip divided by the slip by the paper's formula
+    brittle_speed, brittle_slip : speed and slip, for the smallest fracture energy
+    brittle_crossing : crossing, for fracture energies below BRITTLE_ENERGY
+    line_speed, line_width, line_slip : for pulses in one dimension with the same friction and with
+        damping; width and slip are divided by those of the paper's formulas
+    less_damped : width in one dimension with the smaller damping, divided by the width with the
+        larger one
+    thinnest_width : pulse width, for the smallest gamma
     """
     varied = with_varied_energy(pulses)
     brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
@@ -524,6 +554,7 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
         "less_damped": varied["less_damped_pulse_width"] / varied["damped_pulse_width"],
         "crossing": sliding_in_crossings(pulses),
         "brittle_crossing": sliding_in_crossings(brittle),
+        # In these units c_s = sqrt(gamma/2) and H = 1.
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
         "thinnest_width": with_smallest_gamma(varied)["pulse_width"],
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
@@ -534,9 +565,10 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
 def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
     """Return the speeds of the fastest pulse on its coarsest and on its finest grid.
 
-    Also return the largest speed of all pulses with damping (damped_speed), on the finest grids.
+    Speeds are measured at the last station. Also return the largest speed of all pulses with
+    damping (damped_speed), on the finest grids.
     """
-    at_station = rows_at_station(evidence)
+    at_station = rows_at_station(evidence, LAST)
     rows = at_station.query("part == 'pulse'")
     fastest = rows.loc[rows["speed"].idxmax()]
     is_fastest_run = (rows[RUN_COLUMNS] == fastest[RUN_COLUMNS]).all(axis=1)
@@ -554,18 +586,21 @@ def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
 def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
-    far_speed, far_slip : largest relative change of speed and slip between the last two stations
-    from_near_slip : largest relative change of slip between the first and the last station
+    far_speed, far_slip : largest relative change of speed and slip between the last two stations,
+        of pulses that stay whole
+    from_near_slip : largest relative change of their slip between the first and the last station
+    drawn_split : see `split_of_drawn_pulse`
 
-    These are about pulses that stay whole. Numbers on those that split are in `split_pulses`.
+    The numbers of `split_pulses` are returned, too.
     """
     numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
     numbers["drawn_split"] = split_of_drawn_pulse(evidence)
-    # With an infinite tolerance, this selects pulses that do not split and do not slide again.
+    # With an infinite tolerance, a pulse counts as steady if it does not split and if no point
+    # slides again behind it.
     is_whole = steady_on_two_grids(evidence, "far", tolerance=np.inf).eq(True)
-    speed_change = change_with_distance(evidence, "speed", before_last=1)
-    slip_change = change_with_distance(evidence, "pulse_slip", before_last=1)
-    slip_change_from_first = change_with_distance(evidence, "pulse_slip", before_last=2)
+    speed_change = change_with_distance(evidence, "speed", SECOND_LAST)
+    slip_change = change_with_distance(evidence, "pulse_slip", SECOND_LAST)
+    slip_change_from_first = change_with_distance(evidence, "pulse_slip", THIRD_LAST)
     return numbers | {
         "far_speed": float(speed_change[is_whole].max()),
         "far_slip": float(slip_change[is_whole].max()),
@@ -574,12 +609,13 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
 
 
 def split_of_drawn_pulse(evidence: Evidence) -> float:
-    """Return where the pulse of the part field splits on its finest grid, in units of H.
+    """Return where the pulse that a figure shows splits on its finest grid, in units of H.
 
-    This pulse is drawn in a figure. It was followed in the part far. NaN if it does not split.
+    NaN if it does not split.
     """
+    # The figure shows the part field. The part far has the same pulse, which is followed farther.
     drawn = evidence.tables["layer"].query("part == 'field'").iloc[0]
-    far = rows_at_station(evidence).query("part == 'far'").sort_values("cells")
+    far = rows_at_station(evidence, LAST).query("part == 'far'").sort_values("cells")
     parameters = ["gamma", "tau0", "weakening"]
     drawn_parameters = drawn[parameters].to_numpy(float)
     is_drawn = np.isclose(far[parameters].to_numpy(float), drawn_parameters).all(axis=1)

@@ -57,7 +57,7 @@ class Entry(SimpleNamespace):
         if self.exact_largest is not None:
             median, largest = percent(self.exact_median), percent(self.exact_largest)
             parts.append(
-                f"runs deviate from exact theory by {median} (median), or {largest} at most"
+                f"runs deviate from exact theory by {median} (median) and by at most {largest}"
             )
         parts += [*self._other_tolerances(), *self._not_counted()]
         return "; ".join(part for part in parts if part)
@@ -91,15 +91,18 @@ class Entry(SimpleNamespace):
             names = ", ".join(f"`{id}`" for id in self.follows_from)
             reasons.append(f"the claim follows from {names} and is not counted again")
         if self.beyond:
-            reasons.append("the claim is beyond the paper and is not counted")
+            reasons.append("the claim goes beyond the paper and is not counted")
         if self.remark:
             reasons.append("the claim is a remark on a drawing and is not counted")
         return reasons
 
+    def _has_relative_deviation(self) -> bool:
+        """Return True except for deviations of exponents, and for those from 0."""
+        return self.kind != "scaling" and bool(self.predicted)
+
     def _deviation_and_tolerance(self) -> str:
         """Return the deviation and the tolerance, for a claim that has a deviation."""
-        # Deviations of exponents, and those from 0, are not relative.
-        if self.kind == "scaling" or self.predicted == 0.0:
+        if not self._has_relative_deviation():
             return f"{number(self.deviation, 2)}, tolerance {setting(self.tolerance)}"
         # The deviation of an estimate is the median over all runs.
         text = "median " if self.kind == "approximate" else ""
@@ -109,12 +112,12 @@ class Entry(SimpleNamespace):
     def _sentence_on_deviation(self) -> str:
         """Return a sentence with the deviation and its uncertainty."""
         uncertainty = number(self.uncertainty)
-        if self.predicted:
-            # The uncertainty is relative, like the deviation.
+        if self._has_relative_deviation():
             uncertainty = percent(self.uncertainty / abs(self.predicted))
         deviation = "median deviation" if self.kind == "approximate" else "deviation"
-        compared = self.compared_text().removeprefix("median ")
-        return f"The {deviation} is {compared}; the uncertainty is {uncertainty}."
+        # The text is, for example, "median 12 %, tolerance 20 %".
+        deviation_and_tolerance = self.compared_text().removeprefix("median ")
+        return f"The {deviation} is {deviation_and_tolerance}; the uncertainty is {uncertainty}."
 
     def _numbers_of_runs(self) -> list[str]:
         """Return the number of runs, how much they deviate, and how many are left out."""
@@ -273,8 +276,10 @@ class Ledger:
         text = f"{self.count()} counted claims: {', '.join(listed)}"
         failed = sum(not claim.counted and claim.verdict == FAILED for claim in self)
         if failed:
-            words = "claim, not counted, is" if failed == 1 else "claims, not counted, are"
-            text += f"; {failed} more {words} not reproduced"
+            words = (
+                "claim that is not counted is" if failed == 1 else "claims that are not counted are"
+            )
+            text += f"; {failed} further {words} not reproduced"
         return f"{text}."
 
     def differences(self, shipped: Mapping[str, str]) -> list[dict]:
@@ -290,8 +295,11 @@ def _count_of(values: Iterable[str], wanted: Sequence[str]) -> int:
     return sum(not wanted or value in wanted for value in values)
 
 
-def _entry_with_id(what: str, id: str, entries: Mapping[str, Any]) -> Any:
-    """Return the entry with an id; raises ValueError, with all ids, if there is none."""
+def _entry_with_id(kind: str, id: str, entries: Mapping[str, Any]) -> Any:
+    """Return the entry with an id; raises ValueError, with all ids, if there is none.
+
+    kind : word for an entry in the message, "claim" or "finding"
+    """
     if id not in entries:
-        raise ValueError(f"{what}: {id!r}; allowed: {', '.join(entries)}")
+        raise ValueError(f"{kind}: {id!r}; allowed: {', '.join(entries)}")
     return entries[id]

@@ -175,7 +175,7 @@ def judge_claim(evidence: Evidence, id: str) -> Claim:
     try:
         return JUDGES_BY_KIND[entry["kind"]](evidence, id, **entry["rule"])
     except (AttributeError, LookupError, NameError, SyntaxError, TypeError) as error:
-        allowed = "the keys of its kind, with expressions over columns"
+        allowed = "the keys of a rule of its kind, and expressions of column names as values"
         raise ValueError(f"claims: rule of {id}: {error}; allowed: {allowed}") from error
 
 

@@ -1,7 +1,8 @@
 """Judge claims about pulses on lattices: equations, uniqueness and stability.
 
 `equation` and `always` judge claims whose rule is in manuscript/claims.yaml. Each other claim has a
-function here, which takes the evidence and the id of the claim, and returns the result.
+function here, which takes the evidence and the id of the claim, and returns the result. Its
+`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -79,6 +80,7 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     if not holds:
         # Without a condition, the rupture must end in one of these regimes.
         holds = f"regime in {rule.ends}"
+    # Where lattices cannot decide, the exact solution must end in one of the regimes rule.ends.
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
         decided += evidence.holds_in_runs(sweep, rule.where, holds, rule.decidable, rule.ends)
@@ -94,26 +96,28 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     """Return two columns of signs: 1 if a pulse grows, -1 if it decays, 0 if it does neither.
 
     Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond. It
-    is compared with a reference: the pulse of the run with the same level on the left that stays at
-    the level 0. By theory this pulse keeps its size.
+    is compared with a reference: the pulse of an otherwise equal run that stays at the level 0. By
+    theory this pulse keeps its size.
 
     changed : sign of the velocity change; 0 if it is not larger than the change of the reference
     widened : sign of the half-width minus that of the reference
 
     Both are -1 if the pulse has died, and 0 if they are unknown.
     """
-    reference_by_left = table[table["beyond"] == 0.0].set_index("left")
+    keys = ["left", "right", "width", "dx", "damping_ratio", "release", "friction"]
+    references = table[table["beyond"] == 0.0].drop_duplicates(keys).set_index(keys)
+    # The reference of each run, in the order of the runs.
+    reference = references.reindex(pd.MultiIndex.from_frame(table[keys])).set_index(table.index)
     change = table[VELOCITY_CHANGE]
-    change_of_reference = table["left"].map(reference_by_left[VELOCITY_CHANGE])
-    has_changed = change.abs() > change_of_reference.abs()
-    widening = table[HALF_WIDTH] - table["left"].map(reference_by_left[HALF_WIDTH])
-    signs = {
-        "changed": np.sign(change).where(has_changed, 0.0),
-        "widened": np.sign(widening),
-    }
-    # A pulse that has died counts as decayed.
+    has_changed = change.abs() > reference[VELOCITY_CHANGE].abs()
+    widening = table[HALF_WIDTH] - reference[HALF_WIDTH]
+    changed = np.sign(change).where(has_changed, 0.0)
+    widened = np.sign(widening)
     has_died = table["regime"] == "arrested"
-    return {name: sign.mask(has_died, -1.0).fillna(0.0) for name, sign in signs.items()}
+    return {
+        "changed": changed.mask(has_died, -1.0).fillna(0.0),
+        "widened": widened.mask(has_died, -1.0).fillna(0.0),
+    }
 
 
 def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
@@ -126,7 +130,8 @@ def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
 def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether the layer is thin: its thickness must be much smaller than each pulse width.
 
-    The thickness is 1. Divided by the width, it must not be larger than the tolerance.
+    The thickness is 1. Divided by the width, it must not be larger than the tolerance. This is a
+    premise of the model. If it fails, the verdict is "premise not met".
     """
     table = evidence.finest("any_prestress")
     allowed = evidence.tolerance(id)
@@ -134,8 +139,10 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     is_thin = 1.0 / width <= allowed
     further = {
         "narrowest pulse, in H": width.min(),
-        "widest pulse": width.max(),
-        "slowest front, over the fastest wave": table["front_speed_right"].min(),
+        "widest pulse, in H": width.max(),
+        "slowest front speed divided by the speed of the fastest wave": table[
+            "front_speed_right"
+        ].min(),
     }
     template_values = {
         "gamma": sorted({*table["gamma"]}),
@@ -222,9 +229,11 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
             finest["pulse_slip"] <= tolerance, middle["pulse_slip"] <= tolerance
         ),
         further={
-            "slip off by at most": float(largest["pulse_slip"]),
-            "slip off the exact slip by at most": float(largest["exact_pulse_slip"]),
-            "slip off that without damping by at most": float(largest["paper_pulse_slip"]),
+            "largest deviation of the slip": float(largest["pulse_slip"]),
+            "largest deviation of the slip from the exact one": float(largest["exact_pulse_slip"]),
+            "largest deviation of the slip from the formula without damping": float(
+                largest["paper_pulse_slip"]
+            ),
         },
     )
 
@@ -299,14 +308,12 @@ def stress_pulse_set_by_prestress(evidence: Evidence, id: str) -> Qualitative:
     deviations = (table[sizes] / exact - 1.0).abs()
     uncertainties = table[[f"uncertainty_{size}" for size in sizes]].to_numpy() / exact
     decided = []
-    for deviations_of_run, uncertainties_of_run in zip(
-        deviations.to_numpy(), uncertainties, strict=True
-    ):
-        decided.append(all_within(deviations_of_run, uncertainties_of_run, allowed))
+    for run, deviations_of_run in enumerate(deviations.to_numpy()):
+        decided.append(all_within(deviations_of_run, uncertainties[run], allowed))
     largest = deviations.max()
-    words = "on the lattice, with damping, off by at most"
+    words = "largest deviation on damped lattices"
     further = {
-        f"peak {words}": float(largest["pulse_peak_velocity"]),
-        f"half-width {words}": float(largest[HALF_WIDTH]),
+        f"{words}, peak": float(largest["pulse_peak_velocity"]),
+        f"{words}, half-width": float(largest[HALF_WIDTH]),
     }
     return Qualitative(decided=decided, further=further)

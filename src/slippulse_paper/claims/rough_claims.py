@@ -1,7 +1,8 @@
 """Judge claims about pulses on a rough pre-stress, and compute the numbers of our finding on them.
 
 An ensemble is a set of runs whose pre-stress has the same statistics, with different seeds. A
-function that judges a claim takes the evidence and the id of the claim, and returns the result.
+function that judges a claim takes the evidence and the id of the claim, and returns the result. Its
+`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 import pandas as pd
@@ -54,14 +55,15 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     alive, dead = (smooth["pulses"] - smooth["deaths"]).sum(), smooth["deaths"].sum()
     dead_in_rough, all_in_rough = rough["deaths"].sum(), rough["pulses"].sum()
     template_values = {
+        # Upper bound of the death rate, if no pulse dies where the pre-stress is smooth.
         "largest_rate": RULE_OF_THREE / smooth["distance"].sum(),
         "dying": dead_in_rough,
         "stronger": all_in_rough,
         "least_deviation": roughness[~is_smooth].min(),
     }
     further = {
-        "pulses that die at larger deviations": float(dead_in_rough),
-        "of": float(all_in_rough),
+        "pulses that die at larger standard deviations": float(dead_in_rough),
+        "all pulses at larger standard deviations": float(all_in_rough),
     }
     return Qualitative(
         decided=[True] * int(alive) + [False] * int(dead),
@@ -83,10 +85,10 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
     # The ensemble with the smoothest pre-stress is shown with the claim.
     smoothest = rows.loc[rows["deviation"].idxmin()]
     further = {
-        "smallest deviation": smoothest["deviation"],
-        "spread of its velocities": float(velocity_spread[smoothest.name]),
-        "its cracks": smoothest["cracks"],
-        "its deaths": smoothest["deaths"],
+        "smallest standard deviation": smoothest["deviation"],
+        "spread of the velocities at this deviation": float(velocity_spread[smoothest.name]),
+        "cracks at this deviation": smoothest["cracks"],
+        "deaths at this deviation": smoothest["deaths"],
     }
     return Qualitative(decided=[*changed], further=further)
 
@@ -153,14 +155,15 @@ def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
 def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
     """Return the survival of pulses where most die, and a bound of the death rate where none dies.
 
-    worst_... : of the ensemble with the highest death rate
-    worst_survival, worst_low, worst_high : fraction of pulses that survive to the end, and its
-        confidence interval
+    worst_level, worst_deviation, worst_stop : mean and standard deviation of the pre-stress, and
+        the distance at which it ceases to be rough, in the ensemble with the highest death rate
+    worst_survival, worst_low, worst_high : fraction of its pulses that survive to the end, and the
+        confidence interval of this fraction
     calm_rate : upper bound of the death rate over all ensembles without deaths
     """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
-    # The survival curve of this ensemble has rows in the order of the distance.
+    # The last row of its survival curve, whose rows are in the order of the distance.
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
     is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
     end_of_curve = study[is_curve & is_worst].iloc[-1]

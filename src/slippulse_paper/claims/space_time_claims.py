@@ -3,6 +3,7 @@
 Numbers that were read off the figure are called readings. The study `published_figure` fits the
 exact solution to them. A pull is a fitted value minus the reading, divided by the reading error.
 A function that judges a claim takes the evidence and the id of the claim, and returns the result.
+Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 import math
@@ -63,11 +64,11 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
     for words, fit in (("with", with_arrows), ("without", without_arrows)):
         for name, excess in excess_lengths(evidence, fit).items():
             statement = evidence.readings[name]["statement"]
-            further[f"{statement}, longer than at the fit {words} arrows by"] = excess
-    values = readings_by_name(evidence)
+            further[f"{statement}, drawn minus best fit {words} arrows"] = excess
+    readings = readings_by_name(evidence)
     # Position of the right front at the time at which the arrow for T_trans ends.
-    front_position = values["intercept"] + values["front_speed"] * values["arrow_time"]
-    values |= {
+    front_position = readings["intercept"] + readings["front_speed"] * readings["arrow_time"]
+    template_values = readings | {
         "longer": [*excess_lengths(evidence, without_arrows).values()],
         # Distance between the fronts, which are symmetric.
         "apart": 2.0 * front_position,
@@ -77,7 +78,7 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
         chi_square=with_arrows["chi2"] - without_arrows["chi2"],
         degrees_of_freedom=with_arrows["dof"] - without_arrows["dof"],
         further=further,
-        template_values=values,
+        template_values=template_values,
     )
 
 

@@ -9,6 +9,7 @@ estimated_time, estimated_length : the paper's estimates
 covered : distance that the left front has covered (arrests only)
 
 A function that judges a claim takes the evidence and the id of the claim, and returns the result.
+Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -43,22 +44,33 @@ NO_BACKWARD_SLIP = "left > -1"
 MAX_ARREST_GAP = 1.0
 # The numbers that are shown with a claim are for this fraction of the distance to x_minus.
 SHOWN_FRACTION = 0.95
+# Some claims compare runs that differ only in the level or only in gamma. These parameters are then
+# the same.
+OTHER_PARAMETERS = ("width", "damping_ratio", "release")
 # Quantities of the transition, with their symbols.
 SYMBOLS = {"time": "T", "length": "L"}
 # The paper's T_trans under a displacement boundary can be understood in two ways (criteria): as the
 # time of the first stick, or as the time at which the slip reaches the printed value 2 tau/gamma,
 # where tau is taken as the level tau_0.
 FIRST_STICK, PRINTED_SLIP = "first stick", r"slip $2\tau_0/\gamma$"
-# New names of columns, by their names in the tables of results.
+# New names of columns, by their names in the tables of results. A transition is measured at the
+# first stick if the displacement is held, and at a fraction of the path if the stress is held.
 PAPER_ESTIMATES = {
     "paper_transition_time": "estimated_time",
     "paper_transition_length": "estimated_length",
 }
-STICK_COLUMNS = {"transition_time": "time", "transition_length": "length"}
-SLIP_COLUMNS = {"slip_time_background": "time", "slip_length_background": "length"}
+TRANSITION_COLUMNS = {
+    "transition_time": "time",
+    "transition_length": "length",
+    **PAPER_ESTIMATES,
+}
 COLUMNS_BY_CRITERION = {
-    FIRST_STICK: STICK_COLUMNS | PAPER_ESTIMATES,
-    PRINTED_SLIP: SLIP_COLUMNS | PAPER_ESTIMATES,
+    FIRST_STICK: TRANSITION_COLUMNS,
+    PRINTED_SLIP: {
+        "slip_time_background": "time",
+        "slip_length_background": "length",
+        **PAPER_ESTIMATES,
+    },
 }
 # New names of columns of lattices under held stress, which are measured at the last release.
 ARREST_COLUMNS = {
@@ -90,10 +102,11 @@ def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
 
 
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Return the runs of figure 5, and the undamped runs of figures 10 and 11.
+    """Return the lattice runs of figure 5, and the undamped ones of figures 10 and 11.
 
-    Sweeps without such runs are left out.
+    A sweep is left out if a changed configuration has no such runs in it.
     """
+    # The sweeps of these figures, with conditions that select runs.
     conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
@@ -108,25 +121,26 @@ def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 
 
 def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
-    """Return exact solutions at each combination of choices.
+    """Return exact solutions at each combination of the choices that the paper leaves open.
 
     The combination with which we drew figure 5 comes first, because claims show the numbers of the
     first one.
     """
-    # The choices that vary, and their values in figure 5.
+    # The names of these choices, and their values in figure 5.
     open_choices = ["release", "damping_ratio"]
     choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
-    condition = f"boundary == {boundary!r} and {NO_BACKWARD_SLIP}"
-    table = evidence.tables["open_choices"].query(condition)
+    table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
     runs_of_figure: list[Runs] = []
     other_runs: list[Runs] = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         is_of_figure = choices_of_figure.items() <= choice.items()
         group = runs_of_figure if is_of_figure else other_runs
+        # In a changed configuration, no run may be left. Claims are then not testable.
+        rows = rows.query(NO_BACKWARD_SLIP)
         group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
 
@@ -157,10 +171,8 @@ def arrests(evidence: Evidence) -> list[Runs]:
     is at the last release.
     """
     arrest_runs = []
-    for choice, exact_tables in exact_runs(evidence, "stress"):
-        widest = [
-            widest_at_each_level(table, COLUMNS_BY_CRITERION[FIRST_STICK]) for table in exact_tables
-        ]
+    for choice, tables in exact_runs(evidence, "stress"):
+        widest = [widest_at_each_level(table, TRANSITION_COLUMNS) for table in tables]
         arrest_runs.append(Runs(choice, widest))
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
@@ -182,11 +194,12 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
     widest = table.sort_values("width").drop_duplicates("left", keep="last")
     widest = widest.rename(columns=new_names)
     if "covered" not in widest:
-        # An exact solution is measured when the front has covered a fraction of its whole distance.
-        # This distance is equal to the estimated time, which assumes the speed 1.
+        # An exact solution is measured when the front has covered a fraction of |x_minus|. Its
+        # table has the estimated time for all of this distance, which is equal to the distance
+        # because the paper assumes the speed 1.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
-    # At speed 1 the left front needs a time equal to its distance. Since the right front has run
-    # equally far, the distance between the fronts is twice as long.
+    # The new estimates are for the covered distance. At speed 1 the left front needs a time equal
+    # to it. Since the right front has run equally far, the fronts are twice as far apart.
     covered = widest["covered"]
     return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 
@@ -211,7 +224,8 @@ def described_median_ratios(combinations: Sequence[Combination]) -> dict[str, fl
     """Return `median_ratio_by_fraction` with words for the table of claims as keys, sorted."""
     by_words = {}
     for fraction, median in median_ratio_by_fraction(combinations).items():
-        by_words[f"median ratio: at {text_of_value(fraction)}"] = median
+        end = fraction if isinstance(fraction, str) else f"{text_of_value(fraction)} of the path"
+        by_words[f"median ratio, end at {end}"] = median
     return dict(sorted(by_words.items()))
 
 
@@ -266,7 +280,7 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
     estimate = float(scene[f"paper_transition_{quantity}"])
     return {
         "arrow of figure 4 divided by the estimate": reading["value"] / estimate,
-        "its reading error": reading["reading_error"] / estimate,
+        "reading error of this ratio": reading["reading_error"] / estimate,
     }
 
 
@@ -277,6 +291,7 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     reach this value, so the claim also shows how many do.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
+    # Count the runs that reach the printed slip.
     runs = evidence.finest("scaling_displacement")
     at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
     # The ratio is NaN if a run does not reach the printed slip.
@@ -284,8 +299,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     is_within_tolerance = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {
         f"runs that reach the {PRINTED_SLIP}": float(ratio.count()),
-        "in all": float(len(ratio)),
-        "of these within the tolerance": float(is_within_tolerance.sum()),
+        "all runs": float(len(ratio)),
+        "runs that reach it within the tolerance": float(is_within_tolerance.sum()),
     }
     # Values for the sentences of the claim.
     template_values = readings_by_name(evidence) | deviations_at_first_stick(combinations)
@@ -390,15 +405,16 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
 def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """Judge whether the left front takes longer to its arrest than it would take at speed 1.
 
-    The paper estimates the time by this speed, and says that it underestimates the time. Today the
-    claim has no tolerance (0). Its earlier tolerance was a limit on how much longer it may take.
+    The paper estimates the time by this speed, and says that the estimate is too short. The
+    tolerance of this claim is 0, which sets no limit to the additional time. The ledger also asks
+    for the verdict at an earlier tolerance, which was such a limit.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
         """Judge the runs of one combination; a tolerance above 0 limits the additional time."""
         return replace(
             takes_longer(tables),
-            extra_verdict=lambda tolerance: takes_longer(tables, limit=tolerance).verdict(),
+            extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
         )
 
     runs = arrests(evidence)
@@ -407,22 +423,20 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
         if choice["solution"] == "exact":
             ratio = tables[0]["time"] / tables[0]["covered"]
             smallest_ratios.append(float(ratio.min()))
-    further = {"smallest ratio of the exact solution": min(smallest_ratios)}
+    further = {"smallest exact time divided by the time at speed 1": min(smallest_ratios)}
     return over_choices(judge_each(runs, judge), further=further)
 
 
-def takes_longer(tables: list[pd.DataFrame], limit: float = 0.0) -> Qualitative:
+def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitative:
     """Judge in each run whether the left front takes longer to its arrest than at speed 1.
 
-    limit : largest allowed additional time, as a fraction of the time at speed 1; no limit if it
-        is 0
+    limit : largest allowed additional time, as a fraction of the time at speed 1
     """
     holds = []
     for table in tables[:2]:
         # At speed 1 the time equals the distance.
-        excess = table["time"] / table["covered"] - 1.0
-        is_allowed = (excess <= limit) | (limit == 0.0)
-        holds.append((excess > 0.0) & is_allowed)
+        additional_time = table["time"] / table["covered"] - 1.0
+        holds.append((additional_time > 0.0) & (additional_time <= limit))
     # The two finest lattices must agree. An exact solution is one table, which agrees with itself.
     return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
 
@@ -511,8 +525,12 @@ class Divergence(NamedTuple):
 
 
 def divergence_by_level(table: pd.DataFrame) -> list[Divergence]:
-    """Return the divergence at each level of pre-stress, from the runs at all values of gamma."""
-    return [divergence(runs) for _, runs in table.sort_values("gamma").groupby("left")]
+    """Return the divergence at each level of pre-stress, from the runs at all values of gamma.
+
+    There is one for each width, damping ratio and release rule, if a simulation has several.
+    """
+    groups = table.sort_values("gamma").groupby(["left", *OTHER_PARAMETERS], dropna=False)
+    return [divergence(runs) for _, runs in groups]
 
 
 def divergence(runs: pd.DataFrame) -> Divergence:
@@ -537,7 +555,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 
 
 def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative:
-    """Judge whether a quantity rises with the pre-stress at each gamma.
+    """Judge whether a quantity rises with the pre-stress, among runs that differ in nothing else.
 
     Each pair of neighbouring levels counts as one run. It is undecided if the change is smaller
     than its uncertainty. Values without an uncertainty are exact.
@@ -545,10 +563,10 @@ def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative
     uncertainty = table.get(f"uncertainty_{quantity}", 0.0)
     runs = table.assign(uncertainty=uncertainty).sort_values("left").dropna(subset=quantity)
     decided: list[bool | None] = []
-    for _, same_gamma in runs.groupby("gamma"):
-        changes = same_gamma[quantity].diff()[1:]
+    for _, levels in runs.groupby(["gamma", *OTHER_PARAMETERS], dropna=False):
+        changes = levels[quantity].diff()[1:]
         # A change has the uncertainties of both its values.
-        uncertainties = same_gamma["uncertainty"].rolling(2).sum()[1:]
+        uncertainties = levels["uncertainty"].rolling(2).sum()[1:]
         for change, uncertainty_of_change in zip(changes, uncertainties, strict=True):
             is_decided = abs(change) > uncertainty_of_change
             decided.append(bool(change > 0.0) if is_decided else None)

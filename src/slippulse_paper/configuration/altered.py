@@ -94,7 +94,10 @@ def _equation(change: Mapping[str, Any]) -> str:
 
 
 def _value_text(value: Any) -> str:
-    """Return a value of the configuration as text, or 'other values' if it is nested or empty."""
+    """Return a value of the configuration as text.
+
+    The text is 'absent' for None, and 'other values' for a nested or an empty value.
+    """
     if value is None:
         return "absent"
     if not isinstance(value, list | dict):

@@ -51,15 +51,19 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
 
 
 def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
-    """Return the largest time step of a run, divided by dx."""
+    """Return the largest time step of a run, divided by dx.
+
+    It is the user-defined step of the simulation, or the default step.
+    """
     accuracy = simulation["accuracy"]
     step = simulation.get("max_step", _default_time_step(simulation, run, friction))
+    # The promise is the accuracy that the user requires. It also limits a user-defined step.
     if "promise" in accuracy:
-        # If the user requires an accuracy, it also limits the step that a simulation sets itself.
         step = min(step, accuracy["max_step"])
+    # The coarser runs of a grid study have a spacing that is larger by the factor coarser. If the
+    # spacing is fixed, they have a larger step instead.
     if "fixed" in simulation["spacing"]:
-        # With a fixed spacing, the coarser runs of a grid study differ in the step instead.
-        return step * simulation["coarser"]
+        step *= simulation["coarser"]
     return step
 
 

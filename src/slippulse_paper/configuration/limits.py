@@ -56,7 +56,7 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     try:
         expand(with_promised_spacings(with_ends_of_lists(sweep | {"coarser": coarsest})))
     except ValueError as error:
-        lattice = f"on the lattice {coarsest:g} times coarser of the grid study"
+        lattice = f"on the lattice of the grid study that is {coarsest:g} times coarser"
         raise ValueError(f"{error} ({lattice})") from None
 
 

@@ -120,13 +120,12 @@ class ExpandedProfiles(Collection[dict[str, Any]]):
     def __iter__(self) -> Iterator[dict[str, Any]]:
         """Yield the profile of each run, with one value in place of each list."""
         for profile in self._profiles:
+            if "rough" not in profile:
+                yield dict(profile)
+                continue
             for values in product(*_lists_of(profile)):
-                run_profile = dict(profile)
-                # There are no values without a rough background.
-                if values:
-                    values_by_name = dict(zip(ROUGH_LISTS, values, strict=True))
-                    run_profile["rough"] = {**profile["rough"], **values_by_name}
-                yield run_profile
+                values_by_name = dict(zip(ROUGH_LISTS, values, strict=True))
+                yield {**profile, "rough": {**profile["rough"], **values_by_name}}
 
     def __contains__(self, profile: object) -> bool:
         return any(profile == run_profile for run_profile in self)

@@ -253,7 +253,10 @@ def _is_missing(event: Event) -> bool:
 
 
 def _refusal_of_missing_value(parent: Any, key: Any) -> str:
-    """Return the refusal of a missing value. Its ``key`` is a node, or a number in a list."""
+    """Return the refusal of a missing value in a mapping or list, which is ``parent``.
+
+    ``key`` is the node of its key in the mapping, or its number in the list.
+    """
     if not isinstance(key, ScalarNode):
         return f"no value; {VALUE_ALLOWED}"
     refusal_of_comma = _refusal_of_decimal_comma(parent, key)

@@ -53,17 +53,18 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     kind, path = problem["type"], problem["loc"]
     if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
-    # If a value may have several forms, the path leads beyond the known entries, to one of the
-    # forms. Such a value is refused as a whole, without regard to its keys.
     entry = _last_known_entry(path, config)
+    # If a value may have several forms, the path leads beyond the known entry, to one of the forms.
+    # Such a value is refused as a whole, without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
-    if len(mapping_path) <= len(entry.path):
+    is_known_mapping = len(mapping_path) <= len(entry.path)
+    if is_known_mapping:
         line = _mapping_line(problem, config)
         if line is not None:
             return line
     allowed = "a finite number" if kind == "finite_number" else words_for(entry.schema)
     given = f"{dotted(entry.path)}: {_value_text(entry.value)}"
-    return f"{given}; allowed: {allowed}{_remedy(entry.value)}"
+    return f"{given}; allowed: {allowed}{_hint_at_number_in_text(entry.value)}"
 
 
 def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
@@ -91,7 +92,7 @@ def _name_line(path: Path) -> str:
 def _unknown_key_line(path: Path, config: Mapping) -> str:
     """Return the refusal of an unknown key, with a hint at the key that was probably meant."""
     known_keys = [*_last_known_entry(path, config).schema["properties"]]
-    hint = spelling_hint(path[-1], known_keys) or _other_blocks(path[-1])
+    hint = spelling_hint(path[-1], known_keys) or _hint_at_other_blocks(path[-1])
     return f"{dotted(path)}: unknown key{hint}; allowed: {', '.join(known_keys)}"
 
 
@@ -101,7 +102,7 @@ def _value_text(value: Any) -> str:
     return json.dumps(value) if is_yaml_word else short_repr(value)
 
 
-def _other_blocks(key: str | int) -> str:
+def _hint_at_other_blocks(key: str | int) -> str:
     """Return a hint at the blocks of the configuration that have a key, or no text if none has."""
     blocks: dict[str, type[BaseModel]] = {
         "simulations.NAME": Simulation,
@@ -245,7 +246,7 @@ def _range(schema: Mapping) -> str:
     return " and ".join(f"{LIMIT_SIGNS[key]} {limit}" for key, limit in limits.items())
 
 
-def _remedy(value: object) -> str:
+def _hint_at_number_in_text(value: object) -> str:
     """Return advice if a value is text that was meant as a number, and no text otherwise."""
     text = value.strip() if isinstance(value, str) else ""
     # A number, such as -1.5e3.

@@ -34,7 +34,11 @@ ORDERED = ("left", "right", "width", "gamma", "damping_ratio", "beta", "dx", "le
 
 
 def accuracy_of(config: Configuration) -> dict[str, Any]:
-    """Return the numerical parameters of the preset, or those for the key `accuracy` if given."""
+    """Return the numerical parameters of the preset, changed if the user requires an accuracy.
+
+    The required accuracy (key `accuracy`) is then in ``promise``, and limits the block spacing of
+    each run.
+    """
     preset = config.presets[config.preset].plain()
     if config.accuracy is None:
         return preset
@@ -57,12 +61,13 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "profiles" in given:
         given["profiles"] = without_files(given["profiles"])
     numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
-    # A fixed beta also fixes the spacing, because another one would change beta/dx.
+    # The accuracy that the user requires (promise) can only be kept if the spacing is free. A fixed
+    # beta also fixes the spacing, because another one would change beta/dx.
     has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in numerical and has_own_spacing:
         # NaN means that no accuracy is promised.
         numerical["promise"] = math.nan
-    # In a grid study, coarser is the factor of the spacing of a coarser lattice.
+    # A grid study replaces the factor coarser by that of the spacing of a coarser lattice.
     return {**defaults, **given, "accuracy": numerical, "coarser": 1.0}
 
 
@@ -92,6 +97,7 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
     friction_ratio = None
     if scene.layer is not None:
         friction_ratio = scene.layer.layer(scene.boundary).friction_ratio
+    # The scene in these units has no layer any more.
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
@@ -115,20 +121,26 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
 def _largest_damping_ratio(scene: NamedScene, model: Model, dx: float) -> float:
     """Return an upper bound on the damping ratio beta/dx in a scene."""
     if scene.beta is not None:
-        # Results at different presets are sampled alike, unless the damping ratio is very large.
+        # With a fixed beta, this ratio depends on the spacing of the preset. It is below 1 in most
+        # cases, and the bound is then 1, so that a scene has the same samples at all presets.
         return max(1.0, scene.beta / (scene.dx or dx))
     return model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
 
 
 def _largest_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndarray:
-    """Return an upper bound on the front speed at each value of the pre-stress."""
-    # The speed is infinite at 1.
+    """Return an upper bound on the front speed at each value of the pre-stress.
+
+    levels : values of the pre-stress
+    """
+    # The speed is infinite at the pre-stress 1.
     levels = np.minimum(levels, 1.0 - 1e-6)
     # At a pre-stress of 0 or less, a front is not faster than waves, whose speed is 1.
     is_fast, speeds = levels > 0.0, np.ones(levels.shape)
     if is_fast.any():
+        # Theory covers damping ratios up to this limit. With the release rule "total", fronts are
+        # at least as fast as with the other one.
         ratio = min(damping_ratio, LARGEST_RATIO)
-        speeds[is_fast] = front_speed(levels[is_fast], ratio, "total")
+        speeds[is_fast] = front_speed(levels[is_fast], ratio, release="total")
     return speeds
 
 

@@ -37,12 +37,14 @@ def runs(simulation: Mapping) -> Iterator[Run]:
     """Yield the runs of a resolved simulation, or of one chunk of it."""
     for index, entry in enumerate(entries(simulation)):
         dx = _spacing(simulation, entry, index)
+        # The damping of an entry is beta or, without a list of beta, the damping ratio beta/dx.
+        beta = entry.damping if "beta" in simulation else entry.damping * dx
         yield Run(
             boundary=simulation["boundary"],
             prestress=entry.prestress,
             gamma=entry.gamma,
             dx=dx,
-            beta=entry.damping if "beta" in simulation else entry.damping * dx,
+            beta=beta,
             release=entry.release,
             friction=entry.law,
             extra_terms=entry.extra_terms,
@@ -180,7 +182,7 @@ def _scaled_spacing(dx: float, rule: Mapping, entry: Entry) -> float:
     """
     width, width_power = entry.prestress.width, rule["width_power"]
     is_allowed = width is not None or width_power == 0.0
-    allowed = "0 for a profile without a width"
+    allowed = "0, because this profile has no width"
     check_that(is_allowed, "spacing.width_power", width_power, allowed)
     width_factor = 1.0 if width is None else width**width_power
     return dx * rule["scale"] * (width_factor * entry.gamma ** rule["gamma_power"])

@@ -134,7 +134,7 @@ ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop
 SEEDS = "a whole number >= 0, a list of different ones, or {from: A, to: B} with A < B"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
-FACTORS = "two factors from 1.2 on, one at least 1.1 times the other"
+FACTORS = "two factors >= 1.2, one at least 1.1 times the other"
 UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
@@ -250,12 +250,12 @@ class Profile(Block):
     def _check_background(self) -> Self:
         """Raise ValueError unless a profile has either levels or one table.
 
-        The width of a profile with points becomes None if it is not given. The pre-stress then has
-        no Gaussian.
+        A table is a file, a list of points, or a rough background. The width of a profile with
+        points becomes None if it is not given. The pre-stress then has no Gaussian.
         """
         tables = self._keys_with_value("file", "points", "rough")
         if tables == ["file", "points"]:
-            # The key points then contains the points that were read from the file.
+            # The points were read from the file.
             tables = ["file"]
         levels = self._keys_with_value("left", "right")
         if not tables:
@@ -269,10 +269,10 @@ class Profile(Block):
             given.append("steps")
         require(len(given) == 1, f"{given[0]}: given with {', '.join(given[1:])}", "one of them")
         if self.points is not None and "width" not in self.model_fields_set:
-            # An assignment would mark the width as given.
+            # Pydantic would mark the width as given if it were assigned as usual.
             self.__dict__["width"] = None
         if self.file is not None:
-            # The points were read from the file if the file is named in an overlay.
+            # A file is read only if an overlay names it.
             require(self.points is not None, f"file: {short_repr(self.file)}", "in an overlay")
         # The numbers of a scene with a layer are checked after their conversion from SI units.
         if getattr(self, "layer", None) is None:
@@ -373,6 +373,7 @@ class Physics(Block):
     @model_validator(mode="after")
     def _check_physics(self) -> Self:
         """Raise ValueError if a key is excluded by the boundary condition or by another key."""
+        # In a scene with a layer, gamma follows from the properties of the layer.
         if getattr(self, "layer", None) is None:
             self._check_gamma()
         self.refuse_together("beta", "damping_ratio")
@@ -429,8 +430,8 @@ class Simulation(PhysicsOfSweep):
         "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
     beyond: Beyond | None = key(
-        "second level of the pre-stress, which replaces the first one on one side from"
-        " a position on",
+        "second level of the pre-stress, which replaces the first one on one side"
+        " beyond a position",
         None,
     )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
@@ -578,7 +579,9 @@ class NamedScene(Profile, PhysicsOfScene):
         top = self.layer.top
         agree = top is None or BOUNDARY_OF_TOP[top] == self.boundary
         require(
-            agree, f"boundary: {self.boundary!r}", f"none, or the boundary of layer.top = {top!r}"
+            agree,
+            f"boundary: {self.boundary!r}",
+            f"the one that layer.top = {top!r} implies, or none",
         )
         require(self.gamma is None, f"gamma: {self.gamma}", "none, since it follows from the layer")
         scene = self.in_model_units()
@@ -602,26 +605,29 @@ class NamedScene(Profile, PhysicsOfScene):
             return self
         layer = self.layer.layer(self.boundary)
         gamma = layer.gamma if self.boundary == "displacement" else None
-        given: dict[str, Any] = {"layer": None, "gamma": gamma}
+        converted: dict[str, Any] = {"layer": None, "gamma": gamma}
+        # Convert the keys with one number, such as dx.
         for name, quantity in SI_KEYS.items():
             value = getattr(self, name)
             # Defaults are non-dimensional already.
             if name not in self.model_fields_set or value is None:
                 continue
             if quantity == "stress":
-                given[name] = layer.level_from_pascal(name, value)
+                converted[name] = layer.level_from_pascal(name, value)
             else:
-                given[name] = layer.convert_from_si(value, quantity)
+                converted[name] = layer.convert_from_si(value, quantity)
         allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
-        require((given.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
-        given |= self._tables_and_steps_in_model_units(layer)
+        require((converted.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
+        converted |= self._tables_and_steps_in_model_units(layer)
         quantities = PROFILE_QUANTITIES["bumps"]
-        given["bumps"] = [tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps]
-        return self.model_copy(update=given)
+        converted["bumps"] = [
+            tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps
+        ]
+        return self.model_copy(update=converted)
 
     def _tables_and_steps_in_model_units(self, layer: Layer) -> dict[str, Any]:
         """Return the steps, points and rough background of a scene in non-dimensional units."""
-        given: dict[str, Any] = {
+        tables: dict[str, Any] = {
             "steps": [
                 (layer.convert_from_si(x, "length"), layer.level_from_pascal("steps", level))
                 for x, level in self.steps
@@ -631,7 +637,7 @@ class NamedScene(Profile, PhysicsOfScene):
             x_in_metres, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
             x = layer.convert_from_si(x_in_metres, "length")
             tau = layer.table_from_pascal("points", stress)
-            given["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
+            tables["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
             background = self.rough.plain()
             deviation = layer.convert_from_si(background["deviation"], "stress_difference")
@@ -641,8 +647,8 @@ class NamedScene(Profile, PhysicsOfScene):
             }
             for name in ("correlation_length", "start", "stop", "spacing"):
                 converted[name] = layer.convert_from_si(background[name], "length")
-            given["rough"] = self.rough.model_copy(update=converted)
-        return given
+            tables["rough"] = self.rough.model_copy(update=converted)
+        return tables
 
 
 class Preset(Block):
@@ -668,6 +674,7 @@ class Preset(Block):
         """Raise ValueError if the spacings of the grid study are too close to each other."""
         # At nearly equal spacings a number is nearly the same, even if its error is large.
         first, second = sorted(self.coarser)
+        # The margin 1e-9 is for rounding errors.
         is_far_apart = first >= 1.2 and second >= (1.1 - 1e-9) * first
         require(is_far_apart, f"coarser: {self.coarser}", FACTORS)
         return self
@@ -860,7 +867,11 @@ class Configuration(Block):
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
         problem = f"scenes.{name}: its file has the name of another file"
-        require(not is_taken, problem, "neither index nor SCENE_numbers with another scene SCENE")
+        require(
+            not is_taken,
+            problem,
+            "any name except index, and SCENE_numbers for another scene SCENE",
+        )
 
     def _check_reading(self, key: str, reading: Reading) -> None:
         """Raise ValueError if the number that a reading is compared with is not measured.

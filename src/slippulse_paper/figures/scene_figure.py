@@ -143,7 +143,7 @@ def draw_field(
     rows = rows_by_role["profile"][rows_by_role["profile"]["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     handles = axes.plot(rows["position"], rows["value"], color=BLUE, label="simulated")
-    look: Look = {"color": ORANGE, "gid": "steady", "label": "steady pulse of this side, exact"}
+    look: Look = {"color": ORANGE, "gid": "steady", "label": "exact steady pulse on each side"}
     for pulse in steady_pulses.itertuples():
         handles += axes.plot([0.0, pulse.position], [pulse.value, pulse.value], "--", **look)
     # The legend stands in the panel of the velocity, which is 0 in the middle. It holds for both

@@ -45,7 +45,7 @@ BRIGHTEST_FRACTION = 0.6
 # Markers of what the pulses of a point of the map do.
 OUTCOMES: dict[str, Look] = {
     "steady": {"marker": "o", "color": GREEN, "label": "steady"},
-    "lower dies": {"marker": "o", "color": GREEN, "label": "steady; lower level kills it"}
+    "lower dies": {"marker": "o", "color": GREEN, "label": "steady, not from lower level"}
     | OPEN_MARKER,
     "not settled": {"marker": "s", "color": PURPLE, "label": "not settled"} | OPEN_MARKER,
     "growing": {"marker": "^", "color": BLACK, "label": "grows"},

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from slippulse.data.files import write_text
 
-FOLDER = ".records"
+RECORD_FOLDER = ".records"
 # The rules of this project contain this call. It runs a step, which writes a record.
 STEP_CALL = "run_step("
 
@@ -105,7 +105,7 @@ def _is_unchanged_or_missing(path: str, state: FileState) -> bool:
 def record_path(output: str | Path) -> Path:
     """Return the path of the record of a job, given the first output of the job."""
     path = Path(output)
-    return path.parent / FOLDER / f"{path.name}.json"
+    return path.parent / RECORD_FOLDER / f"{path.name}.json"
 
 
 def write_json(value: object, path: str | Path) -> None:
@@ -161,10 +161,11 @@ class RecordedFiles:
     """All records in a folder of results, and the states of the files that they record."""
 
     def __init__(self, results: str | Path) -> None:
+        """Read all records in the folder of results, and list those that cannot be read."""
         self.results = Path(results)
         self.records: dict[Path, Record] = {}
         self.unreadable: list[Path] = []
-        for path in sorted(self.results.rglob(f"{FOLDER}/*.json")):
+        for path in sorted(self.results.rglob(f"{RECORD_FOLDER}/*.json")):
             try:
                 self.records[path] = read_record(path)
             except (OSError, ValueError):
@@ -185,7 +186,6 @@ class RecordedFiles:
         """
         for path in self.unreadable:
             yield str(_recorded_folder(path) / path.stem), "its record cannot be read"
-        # The recorded state of each file.
         states = self.states()
         yield from _changed_files(states)
         for job in self._jobs():
@@ -265,10 +265,11 @@ def _files_recorded_by_snakemake() -> dict[str, Path]:
 def made_without_step(paths: Iterable[str]) -> set[str]:
     """Return those files that Snakemake made by a rule of the user.
 
-    Such a rule runs no step of this project, and so its jobs have no record in `FOLDER`. The code
-    of the rule is in Snakemake's own record of the file.
+    Such a rule runs no step of this project, so its jobs have no record of this module. The code of
+    the rule, which Snakemake's own record of the file contains, does not call a step.
     """
-    records, user_files = _files_recorded_by_snakemake(), set()
+    records = _files_recorded_by_snakemake()
+    user_files = set()
     for name in {*paths} & {*records}:
         with suppress(OSError, ValueError, TypeError, AttributeError):
             rule_code = json.loads(records[name].read_text(encoding="utf-8")).get("code")
@@ -314,7 +315,8 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
-    folder = Path(path).parent / FOLDER
+    folder = Path(path).parent / RECORD_FOLDER
+    # The records of a folder are cached. A later modification time makes them read again.
     records = _records_in(str(folder), _modification_time(folder))
     return records.get(Path(path).name)
 

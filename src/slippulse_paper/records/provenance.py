@@ -142,7 +142,9 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
         entries.append({"file": str(path), "comment": comment})
     authors = [{"name": name} for name in PAPER["authors"]]
     paper = {"title": PAPER["title"], "authors": authors, "reference": PAPER["doi"]}
-    summary = "make compare AGAINST=FOLDER shows figures, verdicts and tables beside another run"
+    summary = (
+        "make compare AGAINST=FOLDER shows figures, verdicts and tables beside those of another run"
+    )
     content = {
         "version": "https://codecheck.org.uk/spec/config/1.0/",
         "paper": paper,
@@ -159,7 +161,7 @@ COMPARISON_ADVICE = {
     "claims.html": "read it",
     "figures": "compare the CSV, whose numbers the picture draws; look at PNG and PDF",
     "measurements": "numbers must agree within the uncertainties listed in uncertainties/",
-    "studies": "numbers must agree to a relative 1e-6",
+    "studies": "numbers must agree to a relative difference of 1e-6",
     "manuscript": "read it; its numbers follow from the tables",
 }
 # Comments on files, by their folder or name.
@@ -168,7 +170,7 @@ COMMENTS = {
     "measurements": "measured numbers, one row for each run",
     "uncertainties": "grid study of every measured number",
     "manuscript": "the replication report",
-    "claims.html": "the same as a table",
+    "claims.html": "the content of claims.json as a table",
     "explorer.html": "a rupture with sliders: the exact solution and the paper's formulas",
     "claims.json": "the statements of the paper, the measured numbers and the verdicts",
 }

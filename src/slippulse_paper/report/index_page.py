@@ -5,7 +5,7 @@ scenes and the provenance. All links are relative, and the page loads nothing fr
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -20,6 +20,7 @@ from .claims_page import SIGNS
 from .html import markup_of, page
 from .texts import (
     Caption,
+    StatementRow,
     answer,
     judged_lines,
     parameters,
@@ -42,24 +43,22 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
     provenance = _read_json(results / "provenance.json")
     ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
     names = _names_in_texts(provenance["config"], ledger, read_errata(texts["errata"]))
-    # This function evaluates the expressions in a text.
-    filled = partial(fill, names=names)
+    # This function returns a text with the values of the expressions in it.
+    evaluated = partial(fill, names=names)
     summary = read_text(texts["summary"])
-    # Rows of the table of the paper's statements and their verdicts.
-    rows = statement_rows(summary, ledger, filled)
-    paragraphs = {key: filled(summary[key]) for key in ("question", "accuracy")}
     # The first line of the summary is enough to answer the question.
-    paragraphs["answer"] = answer(judged_lines(summary, ledger, filled)[:1])
-    glossary = [(filled(word["term"]), filled(word["meaning"])) for word in summary["words"]]
-    captions = read_captions(texts["captions"], filled)
+    first_line = judged_lines(summary, ledger, evaluated)[0]
+    paragraphs = {
+        "question": evaluated(summary["question"]),
+        "accuracy": evaluated(summary["accuracy"]),
+        "answer": answer([first_line]),
+    }
+    # Rows of the table of the paper's statements and their verdicts.
+    rows = statement_rows(summary, ledger, evaluated)
+    glossary = [(evaluated(word["term"]), evaluated(word["meaning"])) for word in summary["words"]]
+    captions = read_captions(texts["captions"], evaluated)
     figure_names = chain.from_iterable(galleries.values())
     caption_by_figure = {name: _caption_of(name, captions) for name in figure_names}
-    # Collect all texts in Markdown, because one call converts all of them to HTML.
-    markdown = [*paragraphs.values(), *chain.from_iterable(glossary)]
-    for row in rows:
-        markdown += [row.statement, row.number]
-    for caption in caption_by_figure.values():
-        markdown += [caption.finding, caption.caption]
     return page(
         "index.html",
         altered=provenance["overlay"],
@@ -72,10 +71,30 @@ def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mappin
         scenes=scenes,
         exists=lambda path: (results / path).exists(),
         facts=provenance,
-        html=markup_of(markdown),
+        html=_texts_as_html(paragraphs, glossary, rows, caption_by_figure.values()),
         summary=ledger.summary(),
         signs=SIGNS,
     )
+
+
+def _texts_as_html(
+    paragraphs: Mapping[str, str],
+    glossary: Iterable[tuple[str, str]],
+    rows: Iterable[StatementRow],
+    captions: Iterable[Caption],
+) -> Mapping[str, str]:
+    """Return the HTML of each text of the page, by the text in Markdown.
+
+    All texts are collected first, because one call converts all of them.
+
+    glossary : pairs of a term and its meaning
+    """
+    markdown = [*paragraphs.values(), *chain.from_iterable(glossary)]
+    for row in rows:
+        markdown += [row.statement, row.number]
+    for caption in captions:
+        markdown += [caption.finding, caption.caption]
+    return markup_of(markdown)
 
 
 def _names_in_texts(config: Mapping, ledger: Ledger, misprints: list) -> dict[str, object]:

@@ -165,12 +165,12 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     names = _names_of_data(inputs, ledger, altered) | {"show": show, "misprints": misprints}
     # Cells add the names that they define to this dictionary. The errata may use these names,
     # because their expressions are evaluated after the cells.
-    filled = partial(fill, names=names)
+    evaluated = partial(fill, names=names)
     texts = {name: (folder / f"{name}.md").read_text(encoding="utf-8") for name in DOCUMENTS}
-    captions = read_captions(folder / "captions.yaml", filled)
+    captions = read_captions(folder / "captions.yaml", evaluated)
     gallery = Gallery(inputs, texts, captions, document)
     summary = read_text(folder / "summary.yaml")
-    lines = judged_lines(summary, ledger, filled)
+    lines = judged_lines(summary, ledger, evaluated)
     shipped_verdicts = read_text(folder / "shipped_verdicts.yaml") or {}
     names |= {
         "figure": lambda name: show(gallery.figure(name)),
@@ -180,9 +180,9 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "question": summary["question"],
         "answer": answer(lines),
         "symbols": summary["symbols"],
-        "accuracy": filled(summary["accuracy"]),
+        "accuracy": evaluated(summary["accuracy"]),
         "verdicts": lambda: verdicts(lines),
-        "errata": lambda: errata(misprints, filled),
+        "errata": lambda: errata(misprints, evaluated),
     }
     return names
 

@@ -34,8 +34,8 @@ STUDIED_QUANTITIES = (
 # Parts of the study of the two-dimensional layer, by their name in the table of its runs.
 LAYER_PARTS = {
     "pulse": "displacement held",
-    "far": "the same, followed farther",
-    "damped": "followed farther, with damping",
+    "far": "displacement held, followed farther",
+    "damped": "displacement held, with damping, followed farther",
     "coupled": "displacement held, strength follows pressure",
     "free": "top free to rise",
     "held": "top held, for comparison",

@@ -256,7 +256,7 @@ def _opening(line: Line) -> str:
     start = "No" if verdict == "not reproduced" else "Not decided"
     # Find the words for this verdict, such as "is not reproduced".
     predicate = {words.verdict: words.singular for words in chain.from_iterable(SENTENCES)}
-    return f"**{start}**: that {line.named}, {predicate[verdict]}."
+    return f"**{start}**: the claim that {line.named} {predicate[verdict]}."
 
 
 def answer(lines: Sequence[Line]) -> str:

@@ -8,7 +8,7 @@ from slippulse.model.layer_units import Layer
 from slippulse.plotting.style import house_style, save_figure
 
 from ..figures import scene_figure as scene
-from ..figures.shared.main_numbers import at_constant_levels, numbers_in_si, scene_numbers
+from ..figures.shared.main_numbers import numbers_in_si, scene_numbers, without_invalid_predictions
 from ..report.scene_page import scene_page
 
 
@@ -25,8 +25,8 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     # A scene is a simulation of one run, whose number is 0.
     data = point(load_dataset(files["data"]), 0)
     row = load_table(files["measured"]).join(load_table(files["predicted"])).iloc[0]
-    # Remove predictions that assume a constant pre-stress ahead of a front, where it varies.
-    row = at_constant_levels(row)
+    # Predictions for a constant pre-stress are invalid if the pre-stress varies ahead of a front.
+    row = without_invalid_predictions(row)
     numbers = scene_numbers(row, load_table(files["uncertainties"]))
     if layer is not None:
         numbers = numbers_in_si(numbers, row, layer)

@@ -128,12 +128,14 @@ def _paths(files: Mapping[str, str | list[str]]) -> list[str]:
 def progress_writer(stream: TextIO, name: str) -> Callable[[float, int], None]:
     """Return a function that writes how much of a job is done and how long the rest will take.
 
-    The arguments of this function are the number of finished runs and the number of all runs. It
-    writes a line only if the last one is some seconds old.
+    The arguments of this function are the number of finished runs, which is a fraction during a
+    single run, and the number of all runs. It writes a line only if the last one is some seconds
+    old.
     """
     began = last_written = time.monotonic()
 
     def write(done: float, total: int) -> None:
+        """Write a line if the job is under way, and if the last line is old enough."""
         nonlocal last_written
         now = time.monotonic()
         is_underway = 0 < done < total
@@ -185,7 +187,7 @@ def logged(path: str | Path) -> Iterator[TextIO]:
 def _reason(error: Exception) -> str:
     """Return in one line why a step has failed."""
     if isinstance(error, OSError) and error.errno in DISK_FULL_ERRORS:
-        remedy = "the unfinished file is removed; make room and run again"
+        remedy = "the unfinished file was removed; free some space and run again"
         return f"{os.strerror(error.errno)}: {remedy}"
     # Messages of HDF5 have several lines.
     return f"{type(error).__name__}: {' '.join(str(error).split())}"

@@ -22,7 +22,7 @@ from slippulse.measurement.uncertainty import studied_columns
 
 from ..configuration.chunks import runs_of
 
-NOT_ONE_SWEEP = "this chunk and the others do not have the runs of one sweep"
+NOT_ONE_SWEEP = "the chunks do not contain the runs of one sweep"
 
 
 def join_datasets(paths: Sequence[str | Path], record: Sequence[str]) -> xr.Dataset:
@@ -94,7 +94,7 @@ def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
-    # The columns that identify a run are added again below, from the table of measured numbers.
+    # The columns that identify a run. They are removed here, because the next step adds rows.
     keys = run_columns(measured.columns)
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=keys)
     # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets
@@ -102,6 +102,7 @@ def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
     quantities = studied_columns(measured, keys)
     rows = pd.MultiIndex.from_product([range(len(measured)), quantities], names=study.index.names)
     table = study.reindex(rows, fill_value="").fillna("").reset_index()
+    # Insert the columns that identify a run after the first column.
     (measured_as_text,) = _read_as_text([finest])
     key_columns = measured_as_text[keys].iloc[table["point"]].reset_index(drop=True)
     columns = [table[["point"]], key_columns, table.drop(columns="point")]

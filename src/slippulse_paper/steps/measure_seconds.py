@@ -50,9 +50,9 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 def timed(errors_by_setting: pd.DataFrame) -> pd.DataFrame:
     """Time the simulations of each setting, and return its errors with the processor seconds.
 
-    The result has one row for each error of a setting, in the form of `error_rows`. The error of
-    the crack's 95 % time comes with the seconds of the crack. All other errors come with those of a
-    pulse, averaged over the damping ratios.
+    The result has one row for each error of a setting, in the form of `error_rows`. One error is
+    measured in the simulation of a crack, and has the seconds of this simulation. All others are
+    measured in simulations of a pulse, and have the mean seconds over its damping ratios.
 
     errors_by_setting : one row for each setting (scheme, order, step, dx)
     """
@@ -67,6 +67,7 @@ def timed(errors_by_setting: pd.DataFrame) -> pd.DataFrame:
         setting.run_pulse(0.0)
     crack_seconds = [shortest_seconds(setting.run_crack) for setting in settings]
     pulse_seconds = [_mean_pulse_seconds(setting) for setting in settings]
+    # The function selects one of the two new columns for each error.
     with_seconds = errors_by_setting.assign(crack=crack_seconds, pulse=pulse_seconds)
     return error_rows(with_seconds, "seconds", cost_column_of=_simulation_with_quantity)
 

@@ -82,7 +82,7 @@ def rows_by_spacing(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, 
 
 
 def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
-    """Return one row for each length of a barrier, which has 1 if a pulse passes it, else 0.
+    """Return one row for each length of a barrier; measured is 1 if a pulse passes it, else 0.
 
     case : a row of `exact_row`, with the parameters and the exact depth
     """

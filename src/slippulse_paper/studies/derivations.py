@@ -70,15 +70,16 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     published_level = published_scene.prestress.left
     functions: NumberFunctions = {
-        "front_speed_elastic": lambda: front_speed(published_level, damping_ratio, "elastic")
+        "front_speed_elastic": lambda: front_speed(published_level, damping_ratio, "elastic"),
+        **pulse_functions(level, gamma, damping_ratio, release),
+        **one_way_functions(level, gamma, damping_ratio, release),
+        **transition_functions(level, levels),
+        # The strain term of the equation of motion at the nucleation point, divided by the
+        # pre-stress there, which is 1.
+        "strain_term": lambda: abs(curvature_at_nucleation(published_rupture())),
+        **front_functions(),
     }
-    functions |= pulse_functions(level, gamma, damping_ratio, release)
-    functions |= one_way_functions(level, gamma, damping_ratio, release)
-    functions |= transition_functions(level, levels)
-    # The strain term of the equation of motion at the nucleation point, divided by the pre-stress
-    # there, which is 1.
-    functions["strain_term"] = lambda: abs(curvature_at_nucleation(published_rupture()))
-    functions |= front_functions()
+    # The functions are called one by one, so that only one number is NaN if theory refuses it.
     rows = [(name, math.nan, value_or_nan(compute)) for name, compute in functions.items()]
     rows += rows_by_position(published_rupture)
     return pd.DataFrame(rows, columns=["quantity", "x", "value"])
@@ -103,7 +104,7 @@ def rows_by_position(compute_rupture: Callable[[], Rupture]) -> list[tuple[str, 
 def pulse_functions(
     level: float, gamma: float, damping_ratio: float, release: str
 ) -> NumberFunctions:
-    """Return functions that compute the numbers of a steady pulse that enters a barrier.
+    """Return the numbers of a steady pulse that enters a barrier, each as a function to call.
 
     The pre-stress is ``level`` before the barrier and -``level`` in it.
     """
@@ -126,18 +127,21 @@ def pulse_functions(
 def one_way_functions(
     level: float, gamma: float, damping_ratio: float, release: str
 ) -> NumberFunctions:
-    """Return functions that compute the numbers of a rupture with a single pulse, to the right.
+    """Return the numbers of a rupture with one pulse, to the right, each as a function to call.
 
-    The left front stops, because the pre-stress is -``level`` on the left.
+    The left front stops, because the pre-stress is -``level`` on the left. Its stop is NaN if it
+    comes after ONE_WAY_DURATION.
     """
     prestress = Prestress(-level, level)
     rupture = Rupture(prestress, gamma, damping_ratio, release, ONE_WAY_DURATION)
     left_end = outermost_fronts(rupture).left
+    has_stopped = left_end.reason == "stops"
+    stop_position, stop_time = (left_end.x, left_end.time) if has_stopped else (math.nan, math.nan)
     first_stick = rupture.first_stick
     first_stick_position = math.nan if first_stick is None else first_stick.x
     return {
-        "one_way_stop_position": lambda: left_end.x,
-        "one_way_stop_time": lambda: left_end.time,
+        "one_way_stop_position": lambda: stop_position,
+        "one_way_stop_time": lambda: stop_time,
         "one_way_first_stick_position": lambda: first_stick_position,
         "one_way_transition_time": lambda: rupture.transition.time,
         "one_way_transition_length": lambda: rupture.transition.length,
@@ -145,7 +149,7 @@ def one_way_functions(
 
 
 def transition_functions(level: float, levels: Sequence[float]) -> NumberFunctions:
-    """Return functions that compute exact transition times divided by the paper's formula.
+    """Return exact transition times divided by the paper's formula, each as a function to call.
 
     transition_point_... : the rupture begins at a single point
     transition_peak_... : the rupture begins at a Gaussian of width W = 1
@@ -166,7 +170,7 @@ def transition_functions(level: float, levels: Sequence[float]) -> NumberFunctio
 
 
 def front_functions() -> NumberFunctions:
-    """Return functions that count the fronts followed block by block, and the admissible ones.
+    """Return two counts as functions: steady fronts followed block by block, and admissible ones.
 
     A steady front is admissible if no block ahead of it reaches the threshold before its release,
     and no block behind it comes to rest at once.

@@ -51,22 +51,27 @@ def table(data: dict[str, xr.Dataset], tables: dict, settings: dict) -> pd.DataF
     for name in NEEDS["data"]:
         # All runs of a simulation are the same scene at several spacings.
         runs = [point(data[name], index) for index in range(data[name].sizes["point"])]
-        rupture = exact_rupture(Scene.from_attributes(runs[0].attrs))
-        # The run whose spacing is nearest to SHOWN_SPACING, on a logarithmic scale.
-        shown_run = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN_SPACING)))
-        parts = [pd.DataFrame([shown_run.attrs])[PARAMETERS].assign(role="scene")]
-        if name in SCENES_OF_CURVES:
-            parts += [_exact_curves(rupture), _lattice_markers(shown_run)]
-        if name == SCENE_OF_MAP:
-            parts += _velocity_map(shown_run, rupture)
-        x = _compared_positions(rupture)
-        exact_values = _exact_values(rupture, x)
-        # A stick near the end of the run is not compared, because on a lattice it may come later.
-        stick_time = exact_values["stick"]
-        stick_time[stick_time > rupture.duration - EDGE_LAYER_TIME] = np.nan
-        parts += [_differences(run, rupture, x, exact_values) for run in runs]
-        tables_by_scene.append(pd.concat(parts).assign(scene=name))
+        tables_by_scene.append(_table_of_scene(name, runs).assign(scene=name))
     return pd.concat(tables_by_scene, ignore_index=True)
+
+
+def _table_of_scene(name: str, runs: list[xr.Dataset]) -> pd.DataFrame:
+    """Return the rows of one scene, from its runs on lattices with several spacings."""
+    rupture = exact_rupture(Scene.from_attributes(runs[0].attrs))
+    # The run whose spacing is nearest to SHOWN_SPACING, on a logarithmic scale.
+    shown_run = min(runs, key=lambda run: abs(np.log(run.attrs["dx"] / SHOWN_SPACING)))
+    parts = [pd.DataFrame([shown_run.attrs])[PARAMETERS].assign(role="scene")]
+    if name in SCENES_OF_CURVES:
+        parts += [_exact_curves(rupture), _lattice_markers(shown_run)]
+    if name == SCENE_OF_MAP:
+        parts += _velocity_map(shown_run, rupture)
+    x = _compared_positions(rupture)
+    exact_values = _exact_values(rupture, x)
+    # A stick near the end of the run is not compared, because on a lattice it may come later.
+    stick_time = exact_values["stick"]
+    stick_time[stick_time > rupture.duration - EDGE_LAYER_TIME] = np.nan
+    parts += [_differences(run, rupture, x, exact_values) for run in runs]
+    return pd.concat(parts)
 
 
 def _exact_curves(rupture: Rupture) -> pd.DataFrame:

@@ -26,6 +26,8 @@ from slippulse.theory.two_fronts import fast_fronts
 LEVEL = 0.5
 GAMMA = 0.65
 DAMPING_RATIO = 0.1
+# Order of the Taylor steps, for which the time step is chosen. It is the default of a Scene.
+ORDER = 4
 # Without leaf springs the left front never covers its whole path. Its transition time is the time
 # at which it has covered this fraction.
 COVERED_FRACTION = 0.95
@@ -121,8 +123,7 @@ class Case:
     def scene(self) -> Scene:
         """Return the scene, with a stable step unless the case sets another one.
 
-        Its duration is that of the case, which is in units of `exact_time`, plus a small margin if
-        a transition is measured.
+        The duration of the case is in units of `exact_time`, and is converted here.
 
         Raises ValueError if the Scene refuses a parameter.
         """
@@ -132,7 +133,7 @@ class Case:
         if has_springs and self.quantity == "T_trans":
             # On a lattice the transition is late by the time in which waves cross a few blocks.
             duration += 4.0 * self.dx
-        stable_step = choose_step("localised", 4, self.damping_ratio, self.gamma * self.dx**2)
+        stable_step = choose_step("localised", ORDER, self.damping_ratio, self.gamma * self.dx**2)
         other_parameters = {"max_step": min(0.5, stable_step)} | self.scene_parameters
         return Scene(
             boundary="displacement" if has_springs else "stress",

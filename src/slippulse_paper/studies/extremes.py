@@ -77,10 +77,10 @@ class Outcome(NamedTuple):
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row per case, with its value, its flags or refusal, and its verdict."""
     front_window = settings["measure"]["front_window"]
-    return pd.DataFrame([judged(case, front_window) for case in CASES])
+    return pd.DataFrame([judged_row(case, front_window) for case in CASES])
 
 
-def judged(case: Case, front_window: float) -> dict[str, Any]:
+def judged_row(case: Case, front_window: float) -> dict[str, Any]:
     """Run a case and return its row of the table, with the verdict.
 
     A run that is flagged gets the verdict "flagged", whatever its value. Otherwise the value is
@@ -92,7 +92,7 @@ def judged(case: Case, front_window: float) -> dict[str, Any]:
     expected = case.expected()
     error = math.nan
     try:
-        outcome = measured(case, front_window)
+        outcome = measured_outcome(case, front_window)
         scale = abs(expected) if expected != 0.0 else 1.0
         error = abs(outcome.value - expected) / scale
         verdict = verdict_on_outcome(outcome, error, tolerance)
@@ -142,18 +142,17 @@ def verdict_on_outcome(outcome: Outcome, error: float, tolerance: float) -> str:
 simulated = lru_cache(maxsize=1)(simulate_on_lattice)
 
 
-def measured(case: Case, front_window: float) -> Outcome:
+def measured_outcome(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
-
-    The first three quantities below are not measured like all others, and come first.
 
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
     """
     if case.quantity == "velocity error":
-        # The solver does not offer single precision. The error of a simple program shows why.
+        # The solver does not offer single precision, so this is the error of a simple program.
         return Outcome(single_precision_error(case), NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":
+        # Only this function can change the sign of the damping. Its solution has no flags.
         solution = solve_on_lattice(scene, damping_sign=case.damping_sign)
         return Outcome(float(solution.slip.max()))
     run = simulated(scene)

@@ -197,7 +197,7 @@ def _simulated_row(
 
 
 def _late_front_speed(right: xr.Dataset) -> float:
-    """Return the front speed over the last third of a run; NaN if it releases fewer than 3 blocks.
+    """Return the front speed over the last third of a run; NaN if it has fewer than 3 releases.
 
     right : the right side of the run
     """

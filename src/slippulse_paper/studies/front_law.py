@@ -28,9 +28,9 @@ SPEEDS = 1.0 + np.geomspace(1e-3, 299.0, 60)
 SPRING_STIFFNESSES = np.concatenate([np.geomspace(3e-3, 0.3, 8), np.geomspace(0.34, 6.0, 34)])
 # Number of points of a line of speed against spacing, without those of the runs.
 SPACING_COUNT = 33
-# Runs with such a line have one level, and a small beta. At a larger beta the pulse would be as
-# narrow as the damped layer at its front.
-REFINED_RUNS = "left == 0.5 and beta <= 0.1"
+# Condition for runs that have such a line: one level, and a small beta. At a larger beta the pulse
+# would be as narrow as the damped layer at its front.
+HAS_LINE_BY_SPACING = "left == 0.5 and beta <= 0.1"
 # Columns that name such a line. What is fixed along it, "b" or "beta", is in the column held, and
 # its value is in the column fixed.
 LINE_COLUMNS = ["release", "left", "gamma", "held", "fixed"]
@@ -101,11 +101,14 @@ def spring_lines(runs: pd.DataFrame) -> Iterator[pd.DataFrame]:
 def lines_by_spacing(runs: pd.DataFrame) -> pd.DataFrame:
     """Return front speeds as functions of the spacing dx, and their limits dx -> 0.
 
-    runs : parameters of simulated runs. The column held is "beta" or "b" (for beta/dx). It names
-        the parameter that is fixed while dx varies, and the column fixed has its value.
+    There is a line of speeds for each combination of values in LINE_COLUMNS. While dx varies along
+    a line, a parameter is fixed. The column held has its name, "beta" or "b" (for beta/dx), and the
+    column fixed has its value.
+
+    runs : parameters of simulated runs, one row for each run
     """
     rows = []
-    for line_values, spacings in runs.query(REFINED_RUNS).groupby(LINE_COLUMNS)["dx"]:
+    for line_values, spacings in runs.query(HAS_LINE_BY_SPACING).groupby(LINE_COLUMNS)["dx"]:
         line = dict(zip(LINE_COLUMNS, line_values, strict=True))
         level, gamma, release = line["left"], line["gamma"], line["release"]
         beta_is_fixed = line["held"] == "beta"

@@ -66,14 +66,14 @@ BETA, SMALLER_BETA = 1e-3, 1e-4
 FREE_TOP_PULSES = ((0.5, 0.42), (0.5, 0.6), (0.8, 0.42))
 # Pre-stress and weakening of a crack under a stress boundary.
 CRACK_LEVEL, CRACK_WEAKENING = 0.8, 0.8
-# Duration of the parts free and crack.
-OTHER_DURATION = 30.0
+# Duration of the parts free and crack at GAMMA. All other parts set their own.
+DEFAULT_DURATION = 30.0
 # Part barrier: the level that stops the left front under a stress boundary, the width of the
-# Gaussian at the nucleation, weakening distances, and the duration divided by OTHER_DURATION.
+# Gaussian at the nucleation, weakening distances, and the duration.
 BARRIER_LEVEL = -0.75
 GAUSSIAN_WIDTH = 5.0
 WEAKENINGS = (0.05, 0.8)
-BARRIER_RELATIVE_DURATION = 4.0
+BARRIER_DURATION = 120.0
 # Friction coefficients of a strength that depends on the normal stress, and the duration.
 COUPLINGS = (0.1, 0.3, 0.6)
 COUPLED_DURATION = 48.0
@@ -119,9 +119,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     for gamma in GAMMAS:
         rows += pulse_rows(gamma) + patch_rows(gamma)
     for before, level in product(STEP_LEVELS, repeat=2):
-        rows += across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
+        rows += rows_across_a_step(GAMMA, level, STEP_WEAKENING, before, CELLS[1:3])
     rows += free_top_rows() + held_top_rows() + crack_rows() + coupled_rows() + barrier_rows()
-    drawn = uniform("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
+    drawn = uniform_scene("displacement", GAMMA, LEVEL, weakening_of(DRAWN_ENERGY, LEVEL, GAMMA))
     field = field_rows(replace(drawn, duration=SNAPSHOT_TIME))
     return pd.concat([pd.DataFrame(rows), field])
 
@@ -129,24 +129,24 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def pulse_rows(gamma: float) -> Rows:
     """Return the rows of the parts pulse, far and damped, for all fracture energies and levels.
 
-    Those of the part pulse also have the numbers of `one_dimensional_theory`.
+    Rows of the part pulse also have the exact pulse of the paper's one-dimensional equation.
     """
     cases = [(LEVEL, energy) for energy in FRACTURE_ENERGIES]
     cases += [(tau0, STANDARD_ENERGY) for tau0 in OTHER_LEVELS]
     rows: Rows = []
     for tau0, energy in cases:
-        scene = uniform("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
-        near_rows, far_rows = near_and_far(scene)
+        scene = uniform_scene("displacement", gamma, tau0, weakening_of(energy, tau0, gamma))
+        near_rows, far_rows = near_and_far_rows(scene)
         theory = one_dimensional_theory(scene)
         rows += [row | theory for row in near_rows] + far_rows
     if gamma == GAMMA:
-        # One pulse of the part step has a uniform pre-stress. It is followed to FAR_STATIONS, too.
-        _, far_rows = near_and_far(uniform("displacement", gamma, LEVEL, STEP_WEAKENING))
+        # One pulse of the part step is in uniform pre-stress, so it can be followed farther, too.
+        _, far_rows = near_and_far_rows(uniform_scene("displacement", gamma, LEVEL, STEP_WEAKENING))
         rows += far_rows
     return rows
 
 
-def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
+def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     """Return the rows of one pulse at STATION_POSITIONS and, on some grids, at FAR_STATIONS.
 
     The pulse is followed to FAR_STATIONS on the grids of `grids_far_away`. If it has split in one
@@ -157,31 +157,31 @@ def near_and_far(scene: LayerScene) -> tuple[Rows, Rows]:
     # The run on the coarsest grid shows how long the runs to near and far stations must be.
     scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
     run = simulate_layer(scene)
-    near_rows, far_rows = measured("pulse", scene, run, 1, positions), []
+    near_rows, far_rows = measured_rows("pulse", scene, run, positions), []
     near_scene = shortened(scene, run, positions)
     far_scene = extended(near_scene, near_rows[-1]["speed"])
     far_grids = grids_far_away(near_scene)
     if coarsest in far_grids:
-        far_rows += followed("far", far_scene, simulate_layer(far_scene), 1)
+        far_rows += rows_at_far_stations("far", far_scene, simulate_layer(far_scene))
     for cells in finer_grids(near_scene):
         split_in_last_run = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
         is_followed_far = split_in_last_run or cells in far_grids
         scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
         run = simulate_layer(scene)
-        near_rows += measured("pulse", scene, run, 1, positions)
+        near_rows += measured_rows("pulse", scene, run, positions)
         if is_followed_far:
-            far_rows += followed("far", scene, run, 1)
+            far_rows += rows_at_far_stations("far", scene, run)
     if any(math.isfinite(row["split_position"]) for row in far_rows):
         far_rows += damped_rows(far_scene, far_grids[:2])
     return near_rows, far_rows
 
 
 def damped_rows(scene: LayerScene, grids: Sequence[int]) -> Rows:
-    """Return the rows of a pulse that is followed with the paper's damping, on several grids."""
+    """Return the rows at FAR_STATIONS of a pulse with the paper's damping, on each grid."""
     rows: Rows = []
     for cells in grids:
         scene = replace(scene, cells=cells, beta=BETA)
-        rows += followed("damped", scene, simulate_layer(scene), 1)
+        rows += rows_at_far_stations("damped", scene, simulate_layer(scene))
     return rows
 
 
@@ -202,33 +202,35 @@ def is_long(scene: LayerScene) -> bool:
 
 
 def finer_grids(scene: LayerScene) -> Sequence[int]:
-    """Return the numbers of cells of all grids for a pulse except the coarsest.
+    """Return the numbers of cells of the grids for a pulse that are finer than the coarsest grid.
 
-    Very brittle pulses, and brittle pulses at GAMMA, have all grids. Other pulses have two of them.
-    At small gamma, where pulses are wide and runs are long, brittle pulses have two grids if their
-    run is not long, and all other pulses have one.
+    There are two such grids, or three for very brittle pulses and for brittle pulses at GAMMA. At
+    small gamma, where pulses are wide and runs are long, there is one, or two if the pulse is
+    brittle and its run is not long.
 
     scene : a scene of the pulse with the duration and the trail that it needs
     """
     if scene.gamma < SMALL_GAMMA:
-        return CELLS[1:3] if is_brittle(scene) and not is_long(scene) else CELLS[1:2]
-    needs_finest = is_very_brittle(scene) or (is_brittle(scene) and scene.gamma == GAMMA)
-    return CELLS[1:] if needs_finest else CELLS[1:3]
+        needs_two = is_brittle(scene) and not is_long(scene)
+        return CELLS[1:3] if needs_two else CELLS[1:2]
+    needs_three = is_very_brittle(scene) or (is_brittle(scene) and scene.gamma == GAMMA)
+    return CELLS[1:4] if needs_three else CELLS[1:3]
 
 
 def grids_far_away(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the grids on which a pulse is followed to FAR_STATIONS.
 
-    There is none if the run is long, and very brittle pulses have the three finest grids. All other
-    pulses have two grids. Pulses at GAMMA, and brittle pulses unless gamma is small, have finer
-    ones than the rest.
+    These are the two coarsest grids in general, and the two middle ones for pulses at GAMMA and for
+    brittle pulses, unless gamma is small. Very brittle pulses have the three finest grids. If the
+    run is long, there is none.
     """
     if is_long(scene):
         return ()
     if is_very_brittle(scene):
-        return CELLS[1:]
-    needs_fine_grids = is_brittle(scene) and scene.gamma > SMALL_GAMMA
-    return CELLS[1:3] if needs_fine_grids or scene.gamma == GAMMA else CELLS[:2]
+        return CELLS[1:4]
+    if scene.gamma == GAMMA or (is_brittle(scene) and scene.gamma > SMALL_GAMMA):
+        return CELLS[1:3]
+    return CELLS[:2]
 
 
 def extended(scene: LayerScene, speed: float) -> LayerScene:
@@ -246,24 +248,26 @@ def extended(scene: LayerScene, speed: float) -> LayerScene:
     return replace(scene, duration=scene.duration + additional_time, trail=trail)
 
 
-def followed(part: str, scene: LayerScene, run: LayerRun, side: int) -> Rows:
+def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int = 1) -> Rows:
     """Return the rows of one run at FAR_STATIONS, with columns that show whether the pulse split.
 
-    Behind the tip of a split pulse points stick early and slide again.
+    In a split pulse, points stick early, behind its narrow tip, and later slide again.
 
     split_position : distance at which a point first sticks early, between the first and the last
         station; NaN if none does
     sliding_again : length of the fault beyond the first station that slides again at the end
     """
-    positions = [side * station * stretch(scene.gamma) for station in FAR_STATIONS]
-    rows = measured(part, scene, run, side, positions)
+    distances = [station * stretch(scene.gamma) for station in FAR_STATIONS]
+    rows = measured_rows(part, scene, run, [side * distance for distance in distances], side)
     sliding_time_at_first_station = rows[0]["pulse_width"] / rows[0]["speed"]
     sliding_time = run.stick_time - run.release_time
     sticks_early = sliding_time < SPLIT_FRACTION * sliding_time_at_first_station
     distance = side * run.x
-    is_beyond = distance > abs(positions[0])
-    is_split = is_beyond & (distance < abs(positions[-1])) & sticks_early
-    slides_again = is_beyond & np.isfinite(run.stick_time) & (run.velocity[0] > 0.0)
+    is_beyond_first_station = distance > distances[0]
+    is_split = is_beyond_first_station & (distance < distances[-1]) & sticks_early
+    # The first row of velocities is that of the fault, which is the bottom of the layer.
+    has_stuck, is_sliding = np.isfinite(run.stick_time), run.velocity[0] > 0.0
+    slides_again = is_beyond_first_station & has_stuck & is_sliding
     behaviour = {
         "split_position": float(distance[is_split].min()) if is_split.any() else math.nan,
         "sliding_again": float(slides_again.sum()) / scene.cells,
@@ -281,20 +285,20 @@ def patch_rows(gamma: float) -> Rows:
     shear_wave_speed = math.sqrt(0.5 * gamma)
     # The layer has the height 1.
     strip_first_stick = 2.0 / shear_wave_speed
-    scene = uniform("displacement", gamma, LEVEL, weakening_of(STANDARD_ENERGY, LEVEL, gamma))
+    scene = uniform_scene("displacement", gamma, LEVEL, weakening_of(STANDARD_ENERGY, LEVEL, gamma))
     scene = replace(scene, duration=PATCH_RELATIVE_DURATION * strip_first_stick)
-    rows = along_path("patch", scene, CELLS[:3])
+    rows = rows_along_path("patch", scene, CELLS[:3])
     # There is one row for each station of a grid, but the region sticks only once in each run.
-    first_stations = rows[:: len(FRACTIONS_OF_PATH)]
-    return [row | {"strip_first_stick": strip_first_stick} for row in first_stations]
+    rows = [row for row in rows if row["station"] == 1]
+    return [row | {"strip_first_stick": strip_first_stick} for row in rows]
 
 
 def free_top_rows() -> Rows:
     """Return the rows of pulses in a layer whose top is free to rise."""
     rows: Rows = []
     for tau0, energy in FREE_TOP_PULSES:
-        scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
-        rows += along_path("free", replace(scene, top="free"), CELLS[:3])
+        scene = uniform_scene("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
+        rows += rows_along_path("free", replace(scene, top="free"), CELLS[:3])
     return rows
 
 
@@ -302,14 +306,15 @@ def held_top_rows() -> Rows:
     """Return the rows of the pulses of `free_top_rows`, on the same grids, but with a held top."""
     rows: Rows = []
     for tau0, energy in FREE_TOP_PULSES:
-        scene = uniform("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
-        rows += at_stations("held", scene, CELLS[:3], STATION_POSITIONS)
+        scene = uniform_scene("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))
+        rows += rows_at_stations("held", scene, CELLS[:3], STATION_POSITIONS)
     return rows
 
 
 def crack_rows() -> Rows:
     """Return the rows of a crack in uniform pre-stress under a stress boundary."""
-    return along_path("crack", uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING), CELLS[:3])
+    scene = uniform_scene("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING)
+    return rows_along_path("crack", scene, CELLS[:3])
 
 
 def coupled_rows() -> Rows:
@@ -319,13 +324,14 @@ def coupled_rows() -> Rows:
     pulse on the left differ, so both are measured.
     """
     weakening = weakening_of(STANDARD_ENERGY, LEVEL, GAMMA)
-    scene = uniform("displacement", GAMMA, LEVEL, weakening)
+    scene = uniform_scene("displacement", GAMMA, LEVEL, weakening)
     scene = replace(scene, duration=COUPLED_DURATION)
     rows: Rows = []
     for coupling, cells in product(COUPLINGS, CELLS[1:3]):
         coupled = replace(scene, coupling=coupling, cells=cells)
         run = simulate_layer(coupled)
-        rows += followed("coupled", coupled, run, 1) + followed("coupled", coupled, run, -1)
+        for side in (1, -1):
+            rows += rows_at_far_stations("coupled", coupled, run, side)
     return rows
 
 
@@ -336,19 +342,21 @@ def barrier_rows() -> Rows:
     stops according to the paper's equation.
     """
     prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
-    # The scene of `crack_rows`, with another pre-stress and duration, and below another weakening.
-    scene = replace(
-        uniform("stress", GAMMA, CRACK_LEVEL, CRACK_WEAKENING),
-        prestress=prestress,
-        duration=BARRIER_RELATIVE_DURATION * OTHER_DURATION,
-    )
-    balance = {"balance_distance": paper_transition_stress(prestress)[0]}
     rows: Rows = []
     for weakening in WEAKENINGS:
-        with_weakening = replace(scene, weakening=weakening)
-        stopped = along_path("barrier", with_weakening, CELLS[:2], sides=(1, -1))
-        rows += [row | balance for row in stopped]
-    return rows
+        scene = LayerScene(
+            boundary="stress",
+            gamma=GAMMA,
+            prestress=prestress,
+            weakening=weakening,
+            duration=BARRIER_DURATION,
+            nucleation=NUCLEATION_HALF_LENGTH,
+            precision="single",
+        )
+        rows += rows_along_path("barrier", scene, CELLS[:2], sides=(1, -1))
+    # According to the paper's equation the front runs at speed 1, so the time is the distance.
+    balance_distance, _ = paper_transition_stress(prestress)
+    return [row | {"balance_distance": balance_distance} for row in rows]
 
 
 def weakening_of(relative_energy: float, tau0: float, gamma: float) -> float:
@@ -364,20 +372,26 @@ def stretch(gamma: float) -> float:
     return math.sqrt(GAMMA / gamma)
 
 
-def uniform(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
-    """Return a scene in uniform pre-stress, whose rupture starts in a region without friction."""
+def uniform_scene(boundary: str, gamma: float, tau0: float, weakening: float) -> LayerScene:
+    """Return a scene in uniform pre-stress, whose rupture starts in a region without friction.
+
+    Pulses are wider at smaller gamma, so all lengths and times are multiplied by `stretch`.
+
+    tau0 : the pre-stress
+    weakening : slip over which the strength falls
+    """
     return LayerScene(
         boundary=boundary,
         gamma=gamma,
         prestress=Prestress(tau0, tau0, peak=tau0),
         weakening=weakening,
-        duration=OTHER_DURATION * stretch(gamma),
+        duration=DEFAULT_DURATION * stretch(gamma),
         nucleation=NUCLEATION_HALF_LENGTH * stretch(gamma),
         precision="single",
     )
 
 
-def across_a_step(
+def rows_across_a_step(
     gamma: float,
     level: float,
     weakening: float,
@@ -391,19 +405,19 @@ def across_a_step(
     The column tau0 has the level that the pulse enters.
 
     weakening : slip over which the strength falls
-    grids, stations : see `at_stations`
+    grids, stations : see `rows_at_stations`
     """
-    scene = uniform("displacement", gamma, before, weakening)
+    scene = uniform_scene("displacement", gamma, before, weakening)
     if before != level:
         position = STEP_POSITION * stretch(gamma)
         steps = ((position, level), (-position, level))
         scene = replace(scene, prestress=replace(scene.prestress, steps=steps))
     relative_energy = weakening * gamma / level**2
     levels = {"before": before, "tau0": level, "fracture_energy": relative_energy}
-    return [row | levels for row in at_stations("step", scene, grids, stations)]
+    return [row | levels for row in rows_at_stations("step", scene, grids, stations)]
 
 
-def at_stations(
+def rows_at_stations(
     part: str, scene: LayerScene, grids: Sequence[int], stations: Sequence[float]
 ) -> Rows:
     """Measure a pulse at fixed positions on the fault, on each grid.
@@ -417,7 +431,7 @@ def at_stations(
     for cells in grids:
         scene = replace(scene, cells=cells)
         run = simulate_layer(scene)
-        rows += measured(part, scene, run, 1, positions)
+        rows += measured_rows(part, scene, run, positions)
         if cells == grids[0]:
             # The run on the coarsest grid shows how long those on finer grids must be.
             scene = shortened(scene, run, positions)
@@ -447,7 +461,7 @@ def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> L
     return replace(scene, duration=last_stick + margin, trail=trail)
 
 
-def along_path(
+def rows_along_path(
     part: str, scene: LayerScene, grids: Sequence[int], sides: Sequence[int] = (1,)
 ) -> Rows:
     """Measure a rupture at FRACTIONS_OF_PATH of the path of its front, on each grid and side.
@@ -462,7 +476,7 @@ def along_path(
         for side in sides:
             distance = path_length(run, side)
             positions = [side * fraction * distance for fraction in FRACTIONS_OF_PATH]
-            rows += measured(part, scene, run, side, positions)
+            rows += measured_rows(part, scene, run, positions, side)
     return rows
 
 
@@ -472,12 +486,14 @@ def path_length(run: LayerRun, side: int) -> float:
     return float((side * run.x[released]).max())
 
 
-def measured(
-    part: str, scene: LayerScene, run: LayerRun, side: int, positions: Sequence[float]
+def measured_rows(
+    part: str, scene: LayerScene, run: LayerRun, positions: Sequence[float], side: int = 1
 ) -> Rows:
     """Return one row for each position, with the parameters and the measured numbers.
 
     The numbers are those of the whole run and those of the pulse at the position.
+
+    side : 1 if the positions are on the right side of x = 0, -1 if they are on the left
     """
     tau0, gamma = scene.prestress.right, scene.gamma
     parameters: dict[str, Any] = {
@@ -491,7 +507,7 @@ def measured(
     }
     if tau0 > 0.0:
         parameters["fracture_energy"] = scene.weakening * gamma / tau0**2
-    numbers_of_run = whole_run(scene, run, side)
+    numbers_of_run = numbers_of_whole_run(scene, run, side)
     rows = []
     for station, position in enumerate(positions, start=1):
         pulse = pulse_at_station(run, position, scene.nucleation)
@@ -499,11 +515,12 @@ def measured(
     return rows
 
 
-def whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
+def numbers_of_whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
     """Return the numbers of a run that do not belong to a station.
 
     first_stick : time at which the middle of the nucleation region sticks. Infinite if it never
-        sticks. NaN if the trail is finite, because the run may then end too early to see this.
+        sticks. NaN if the scene has a finite trail, because then the middle is not solved until the
+        end: only the part of the layer within this length behind the waves is.
     earliest_stick, earliest_stick_position : time and distance from x = 0 of the first stick
     end : position that the front has reached at the end of the run
     """

@@ -173,7 +173,8 @@ def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
     still_sliding = positions[(slip > 0.0) & ~has_stuck_in_time]
     if still_sliding.size:
         raise ValueError(
-            f"{pulse} in a layer of {thickness:g}: still slides at {still_sliding[0]:g}"
+            f"{pulse} in a layer of thickness {thickness:g}: still slides at x ="
+            f" {still_sliding[0]:g}"
         )
     return slip
 

@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from ..configuration.chunks import runs_of
-from .layer import LEVEL, STEP_POSITION, across_a_step, stretch, weakening_of
+from .layer import LEVEL, STEP_POSITION, rows_across_a_step, stretch, weakening_of
 
 NEEDS = {"settings": ["figures.study_layer"]}
 
@@ -77,12 +77,10 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
     numbers: list[dict[str, float]] = [{} for _ in grids]
     for name, relative_level in RELATIVE_LEVELS_BEFORE.items():
         before = relative_level * LEVEL
-        rows = across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
-        # The rows of the first grid come first. Each grid has one row for each station.
-        stations = len(STATION_POSITIONS)
-        for grid, numbers_on_grid in enumerate(numbers):
-            rows_of_grid = rows[grid * stations : (grid + 1) * stations]
-            before_step, halfway, last = rows_of_grid
+        rows = rows_across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
+        for cells, numbers_on_grid in zip(grids, numbers, strict=True):
+            # There is one row for each of STATION_POSITIONS.
+            before_step, halfway, last = (row for row in rows if row["cells"] == cells)
             if name == "uniform":
                 numbers_on_grid |= {"speed": last["speed"], "pulse_width": last["pulse_width"]}
             numbers_on_grid |= {
@@ -96,7 +94,9 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
 def outcome(slips: Mapping[str, float]) -> str:
     """Classify the pulses of one point of the map, from their slips along the path.
 
-    The slip of the pulse in uniform pre-stress at the last position is called the steady slip.
+    The pulse in uniform pre-stress, the one from below (that forms in a lower pre-stress) and the
+    one from above have a slip halfway and at the last position. The last slip of the pulse in
+    uniform pre-stress is called the steady slip.
 
     dying : the slip in uniform pre-stress falls along the path
     growing : the slip in uniform pre-stress rises along the path, or one of the other pulses rises
@@ -106,21 +106,20 @@ def outcome(slips: Mapping[str, float]) -> str:
     not settled : everything else
     """
     steady_slip, halfway_slip = slips["uniform_slip"], slips["uniform_slip_halfway"]
-    if not steady_slip > (1.0 - EQUAL_SLIP_TOLERANCE) * halfway_slip:
+    if steady_slip <= (1.0 - EQUAL_SLIP_TOLERANCE) * halfway_slip:
         return "dying"
-    is_growing = steady_slip > (1.0 + EQUAL_SLIP_TOLERANCE) * halfway_slip
-    reaches_steady_slip = {}
+    if steady_slip > (1.0 + EQUAL_SLIP_TOLERANCE) * halfway_slip:
+        return "growing"
     for name in ("from_below", "from_above"):
         slip = slips[f"{name}_slip"]
-        upper_limit = (1.0 + EQUAL_SLIP_TOLERANCE) * steady_slip
-        # The slip is larger than the steady slip and still rises.
-        is_growing = is_growing or slip > max(upper_limit, slips[f"{name}_slip_halfway"])
-        difference = abs(slip - steady_slip)
-        reaches_steady_slip[name] = difference < EQUAL_SLIP_TOLERANCE * steady_slip
-    if is_growing:
-        return "growing"
-    if all(reaches_steady_slip.values()):
-        return "steady"
-    if reaches_steady_slip["from_above"] and slips["from_below_slip"] == 0.0:
-        return "lower dies"
+        is_above_steady_slip = slip > (1.0 + EQUAL_SLIP_TOLERANCE) * steady_slip
+        if is_above_steady_slip and slip > slips[f"{name}_slip_halfway"]:
+            return "growing"
+    difference_from_below = abs(slips["from_below_slip"] - steady_slip)
+    difference_from_above = abs(slips["from_above_slip"] - steady_slip)
+    if difference_from_above < EQUAL_SLIP_TOLERANCE * steady_slip:
+        if difference_from_below < EQUAL_SLIP_TOLERANCE * steady_slip:
+            return "steady"
+        if slips["from_below_slip"] == 0.0:
+            return "lower dies"
     return "not settled"

@@ -85,7 +85,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def displacement_transitions(
     runs: pd.DataFrame, damping_ratio: float, release: str
 ) -> pd.DataFrame:
-    """Return the transitions under a displacement boundary, where x = 0 is the first to stick.
+    """Return the transitions under a displacement boundary, at the first stick, that of x = 0.
 
     runs : left (the level on both sides), width of the Gaussian, and gamma of each run
     """
@@ -97,10 +97,11 @@ def displacement_transitions(
         # Beyond this position the pre-stress is uniform, and the front has a constant speed.
         uniform_from = GAUSSIAN_END_IN_WIDTHS * width
         speed = float(front_speed(level, damping_ratio, release))
-        # Waves run at speed 1, so up to the time t only the fronts at |x| < t influence x = 0.
+        # Waves run at speed 1, so up to the time t only the fronts at |x| < t influence x = 0. The
+        # fronts are also needed beyond ``uniform_from``.
         reach = max(float(latest_sticks.max()), 2.0 * uniform_from)
         prestress = Prestress(level, level, width)
-        fronts = fast_fronts(prestress, damping_ratio, release, reach, gammas.max())
+        fronts = fast_fronts(prestress, damping_ratio, release, reach=reach, gamma=gammas.max())
         times = stick_times_of_centre(fronts, gammas, latest_sticks)
         right_fronts = right_front_positions(fronts, times, speed=speed, uniform_from=uniform_from)
         rows = group[["boundary"]].assign(nucleation="Gaussian", left=level, width=width)
@@ -133,13 +134,14 @@ def right_front_positions(
 ) -> np.ndarray:
     """Return the position of the right front at each of some times.
 
+    fronts : the curve t(x) of both fronts, which reaches beyond ``uniform_from``
     speed : constant speed of the front in uniform pre-stress
     uniform_from : position beyond which the pre-stress is uniform
     """
     positions = uniform_from + speed * (times - fronts.arrival(uniform_from))
-    # This is right only where the front is beyond ``uniform_from``.
+    # Where the front is not yet beyond ``uniform_from``, its position comes from the curve.
     for index in np.flatnonzero(positions <= uniform_from):
-        positions[index] = fronts.front_at(times[index], 0.0, 1.0)
+        positions[index] = fronts.front_at(times[index], x=0.0, side=1.0)
     return positions
 
 

@@ -198,11 +198,14 @@ class LeftPanel:
         self.combinations = independent_combinations(self.errors, shared_errors)
         self.quantities = readings["quantity"].tolist()
         # Readings of the trailing edge have the time in their name.
-        self.edges = [name for name in self.quantities if name.startswith(TRAILING_EDGE_PREFIX)]
-        self.edge_times = [float(name.removeprefix(TRAILING_EDGE_PREFIX)) for name in self.edges]
+        self.edge_names, self.edge_times = [], []
+        for name in self.quantities:
+            if name.startswith(TRAILING_EDGE_PREFIX):
+                self.edge_names.append(name)
+                self.edge_times.append(float(name.removeprefix(TRAILING_EDGE_PREFIX)))
 
     def exact_values(self, trial: np.ndarray, damping_ratio: float, release: str) -> np.ndarray:
-        """Return the value for each reading by the exact solution of a trial."""
+        """Return the value for each reading by the exact solution of a trial (tau_0, gamma)."""
         tau0, gamma = map(float, trial)
         rupture = Rupture(Prestress(tau0, tau0), gamma, damping_ratio, release, PANEL_END)
         front_end = outermost_fronts(rupture).right
@@ -217,22 +220,22 @@ class LeftPanel:
             "transition_length": rupture.transition.length,
             "largest_velocity": rupture.largest_velocity,
         }
-        allowed = f"{', '.join(values)}, {TRAILING_EDGE_PREFIX}TIME"
-        # The trailing edge is at the position x when x sticks.
+        for name in self.quantities:
+            if name not in values and name not in self.edge_names:
+                allowed = f"{', '.join(values)}, {TRAILING_EDGE_PREFIX}TIME"
+                raise ValueError(f"quantity: {name!r}; allowed: {allowed}")
+        # The trailing edge is at the position x at the stick time of x.
         x = np.linspace(0.0, front_end.x, EDGE_POSITION_COUNT)
         stick_time = rupture.stick_time(x)
         is_stuck = np.isfinite(stick_time)
         edge_positions = np.interp(self.edge_times, stick_time[is_stuck], x[is_stuck])
-        values |= zip(self.edges, edge_positions, strict=True)
-        for name in self.quantities:
-            if name not in values:
-                raise ValueError(f"quantity: {name!r}; allowed: {allowed}")
+        values |= zip(self.edge_names, edge_positions, strict=True)
         return np.array([values[name] for name in self.quantities])
 
     def lattice_values(
         self, trial: np.ndarray, damping_ratio: float, release: str, dx: float
     ) -> np.ndarray:
-        """Return the value for each reading in a lattice run of a trial."""
+        """Return the value for each reading in a lattice run of a trial (tau_0, gamma)."""
         tau0, gamma = map(float, trial)
         scene = Scene(
             boundary="displacement",
@@ -275,7 +278,8 @@ class LeftPanel:
         """Fit tau_0 and gamma by least squares, and return one row for each reading.
 
         Each row has the best tau_0 and gamma, their errors, and the values and pulls of the
-        reading at this optimum. A pull is a deviation from the reading, divided by its error.
+        reading at this optimum. A pull is a deviation from the reading, divided by its error. The
+        fit uses combinations of the pulls that have independent errors.
 
         guess : tau_0 and gamma at which the fit begins
         with_arrows : whether the lengths of arrows are fitted, too
@@ -283,6 +287,7 @@ class LeftPanel:
         is_fitted = with_arrows | ~self.readings["arrow"].to_numpy()
 
         def fitted_pulls(trial: np.ndarray) -> np.ndarray:
+            """Return the independent pulls of all fitted readings, at a trial (tau_0, gamma)."""
             values = self.lattice_values(trial, damping_ratio, release, dx)
             return self.independent_pulls(values)[is_fitted]
 

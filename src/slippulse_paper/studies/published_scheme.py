@@ -45,8 +45,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     )
     columns = {
         "quantity": QUANTITIES,
-        "published": measured(published_run(), front_window),
-        "localised": measured(simulate_on_lattice(scene), front_window),
+        "published": measured_quantities(published_run(), front_window),
+        "localised": measured_quantities(simulate_on_lattice(scene), front_window),
         "exact": [pulse.speed, first_stick, pulse.slip],
     }
     return pd.DataFrame(columns)
@@ -92,7 +92,7 @@ def published_run() -> xr.Dataset:
     return xr.Dataset(fields, {"x": x})
 
 
-def measured(run: xr.Dataset, front_window: float) -> list[float]:
+def measured_quantities(run: xr.Dataset, front_window: float) -> list[float]:
     """Return the values of QUANTITIES on a lattice.
 
     They are the speed of the right front over the last part of its path, the time of the first

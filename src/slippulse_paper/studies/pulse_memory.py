@@ -37,8 +37,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 def rows_of_scene(scene: Scene) -> pd.DataFrame:
     """Return the rows of one scene, in which a pulse passes from one level to another at a step."""
-    # The last step is on the right.
-    position, level = scene.prestress.steps[-1]
+    # Each step is a pair of its position and its level. The outermost one on the right is taken.
+    position, level = max(scene.prestress.steps)
     before = scene.prestress.right
     # In the limit dx -> 0 damping acts only through the front speed.
     front_parameters: dict[str, Any] = {

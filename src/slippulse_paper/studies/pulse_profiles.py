@@ -66,16 +66,17 @@ def stress_profile(run: Run) -> pd.DataFrame:
     crack = ArrestingCrack(run.prestress, run.damping_ratio, run.release)
     # The pulse moves unchanged at the wave speed 1, so it depends on x - t only.
     x_minus_t, velocity = crack.far_pulse()
-    from_tail_to_front = np.argsort(x_minus_t, kind="stable")
-    x_minus_t, velocity = x_minus_t[from_tail_to_front], velocity[from_tail_to_front]
-    x = x_minus_t - x_minus_t[np.argmax(velocity)]
+    curve = pd.DataFrame({"x": x_minus_t, "velocity": velocity})
+    curve = curve.sort_values("x", kind="stable", ignore_index=True)
+    peak = curve["velocity"].argmax()
+    curve["x"] -= curve["x"][peak]
     # The tail is cut off, except one point at which the velocity is small.
-    first_beyond_tail = int(np.argmax(velocity > TAIL_CUT * velocity.max()))
-    start = max(0, first_beyond_tail - 1)
-    x, velocity = x[start:], velocity[start:]
+    is_beyond_tail = curve["velocity"] > TAIL_CUT * curve["velocity"][peak]
+    curve = curve[max(0, is_beyond_tail.argmax() - 1) :]
     # Points that nearly coincide with the one before are left out, because derivatives would fail.
-    is_apart = np.concatenate([[True], np.diff(x) > 1e-9 * np.ptp(x)])
-    x, velocity = x[is_apart], velocity[is_apart]
+    distance_to_previous = curve["x"].diff().fillna(np.inf)
+    curve = curve[distance_to_previous > 1e-9 * np.ptp(curve["x"])]
+    x, velocity = curve["x"].to_numpy(), curve["velocity"].to_numpy()
     # A derivative with respect to t is minus that with respect to x. The integral begins at the
     # front, where the slip is 0.
     slip = cumulative_trapezoid(velocity[::-1], -x[::-1], initial=0.0)[::-1]

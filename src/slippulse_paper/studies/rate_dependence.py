@@ -86,7 +86,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """
     # The centre of a pulse counts as at rest below this fraction of the largest velocity.
     still_fraction = settings["measure"]["still"]
-    critical_alpha = _front(SHOWN_LEVEL).critical_alpha
+    critical_alpha = _front_and_critical_alpha(SHOWN_LEVEL).critical_alpha
     maps = []
     for regime, fraction in MAPPED_FRACTIONS.items():
         maps.append(_velocity_map(regime, fraction * critical_alpha))
@@ -105,8 +105,11 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 @cache
-def _front(level: float) -> Front:
-    """Return the front in a uniform pre-stress; rate strengthening does not change its speed."""
+def _front_and_critical_alpha(level: float) -> Front:
+    """Return the front speed in a uniform pre-stress, and the critical rate strengthening.
+
+    Rate strengthening does not change the front speed.
+    """
     speed = float(front_speed(level, DAMPING_RATIO))
     return Front(speed, critical_rate_strengthening(GAMMA, speed))
 
@@ -117,7 +120,7 @@ def _lattice_rows(still_fraction: float) -> pd.DataFrame:
     smallest_alpha = -2.0 * np.sqrt(GAMMA)
     rows = []
     for level, fraction in product(LEVELS, CRITICAL_FRACTIONS):
-        if fraction * _front(level).critical_alpha > smallest_alpha:
+        if fraction * _front_and_critical_alpha(level).critical_alpha > smallest_alpha:
             rows.append(_lattice_row(level, fraction, still_fraction))
     return pd.DataFrame(rows)
 
@@ -125,7 +128,7 @@ def _lattice_rows(still_fraction: float) -> pd.DataFrame:
 def _critical_rate_strengthenings() -> pd.DataFrame:
     """Return the critical rate strengthening as a function of the level."""
     levels = np.linspace(0.05, 0.9, 60)
-    critical_alphas = [_front(level).critical_alpha for level in levels]
+    critical_alphas = [_front_and_critical_alpha(level).critical_alpha for level in levels]
     return pd.DataFrame({"level": levels, "rate_strengthening": critical_alphas})
 
 
@@ -134,7 +137,7 @@ def _steady_pulses() -> pd.DataFrame:
 
     The largest rate strengthening is just below the critical one, at which the width is infinite.
     """
-    speed, critical_alpha = _front(SHOWN_LEVEL)
+    speed, critical_alpha = _front_and_critical_alpha(SHOWN_LEVEL)
     rows = []
     for alpha in critical_alpha * np.linspace(-0.97, 0.97, 80):
         # In the limit dx -> 0 damping acts only through the front speed, so beta is 0.
@@ -153,7 +156,7 @@ def _lattice_row(level: float, fraction: float, still_fraction: float) -> dict[s
     still_fraction : fraction of the largest velocity below which the centre of a pulse counts as at
         rest
     """
-    front_speed_at_level, critical_alpha = _front(level)
+    front_speed_at_level, critical_alpha = _front_and_critical_alpha(level)
     alpha, dx = fraction * critical_alpha, SPACING_OVER_LEVEL * level
     # The time in which a pulse becomes steady is proportional to 1/(v - 1).
     duration = MIN_DURATION + MEMORY_TIMES / (front_speed_at_level - 1.0)
@@ -256,17 +259,18 @@ def _asymptote(alpha: float) -> pd.DataFrame:
     """Return the left front and the largest velocity at TIMES, by theory for late times.
 
     The column gap has the distance from the left front to x_minus, the position that the front
-    approaches. At late times the slip spreads by diffusion: at the distance y from x_minus it is
-    U erfc(y sqrt(alpha/t)/2). The final slip U is the integral of y times the pre-stress over y.
-    The largest velocity is the largest time derivative of the slip. The integral of the pre-stress
-    over the gap balances the strain at x_minus, U sqrt(alpha/(pi t)).
+    approaches. At late times t the slip spreads by diffusion: at the distance y from x_minus it is
+    U erfc(y sqrt(alpha/t)/2), where U is the final slip.
     """
     x_minus = prestress_balance_position(ARRESTING_PRESTRESS)
     x = np.linspace(x_minus, 12.0, 20_001)
+    # The final slip is the integral of y times the pre-stress over y.
     final_slip = float(np.trapezoid((x - x_minus) * ARRESTING_PRESTRESS(x), x))
     columns = {
         "time": TIMES,
+        # The largest time derivative of the slip over all y.
         "largest_velocity": final_slip / (np.sqrt(2.0 * np.pi * np.e) * TIMES),
+        # The pre-stress in the gap balances the strain at x_minus, U sqrt(alpha/(pi t)).
         "gap": -final_slip / ARRESTING_PRESTRESS.left * np.sqrt(alpha / (np.pi * TIMES)),
     }
     return pd.DataFrame(columns | {"rate_strengthening": alpha})

@@ -19,9 +19,9 @@ from slippulse.theory.rupture import Rupture
 NEEDS = {"settings": ["model.damping_ratio", "model.release", "measure.still"]}
 
 GAMMAS = {"displacement": 1.0, "stress": 0.0}
-# Positive levels along the border between crack and pulse without leaf springs. The border begins
-# at the point (0, 0) and ends beyond the edge of the plane.
-BORDER_LEVELS = np.linspace(0.0, 0.15, 31)[1:]
+# Right levels along the border between crack and pulse without leaf springs. The border begins at
+# the point (0, 0) and ends beyond the edge of the plane.
+BORDER_RIGHT_LEVELS = np.linspace(0.0, 0.15, 31)[1:]
 # Boundary, left level and right level of each velocity profile.
 PROFILES = [
     ("displacement", 0.5, 0.5),
@@ -31,11 +31,11 @@ PROFILES = [
 ]
 PROFILE_TIME = 12.0
 PROFILE_POINTS = 241
-# Pairs of levels (left, right): ends and middle of the axis on which the left level is negative and
-# the right level is 0, and a point in the area of pulses next to this axis.
-NEGATIVE_AXIS = np.array([(-1.0, 0.0), (0.0, 0.0)])
-MIDDLE_OF_NEGATIVE_AXIS = np.array([-0.5, 0.0])
-NEAR_NEGATIVE_AXIS = np.array([-0.9, 1e-3])
+# Pairs of levels (left, right): ends and middle of the line on which the left level is negative and
+# the right level is 0, and a point in the area of pulses next to this line.
+ENDS_OF_LINE = np.array([(-1.0, 0.0), (0.0, 0.0)])
+MIDDLE_OF_LINE = np.array([-0.5, 0.0])
+POINT_IN_PULSE_AREA = np.array([-0.9, 1e-3])
 
 
 class Series(NamedTuple):
@@ -85,10 +85,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def areas_and_lines(damping_ratio: float, release: str, still_fraction: float) -> Iterator[Series]:
-    """Yield for each boundary the areas of one regime, and the lines where one level is 0.
+    """Yield for each boundary the areas of one regime, and two lines.
 
-    The first areas are the four quadrants of the plane. Without leaf springs, areas of pulses
-    cover a part of two of them.
+    The first areas are the four quadrants of the plane of both levels. Without leaf springs, areas
+    of pulses cover a part of two of them. On each line one level is 0 and the other is negative.
 
     still_fraction : a rupture is a pulse if its velocity at x = 0 falls below this fraction of its
         largest velocity
@@ -98,12 +98,12 @@ def areas_and_lines(damping_ratio: float, release: str, still_fraction: float) -
         for left, right in product((-1.0, 1.0), repeat=2):
             quadrant = np.array([(0.0, 0.0), (left, 0.0), (left, right), (0.0, right)])
             middle = np.array([0.5 * left, 0.5 * right])
-            yield outline("area", boundary, quadrant, inside=middle)
+            yield outline("area", boundary, corners=quadrant, inside=middle)
         # The plane is symmetric, so each area or line has a mirror image with exchanged levels.
         for mirrored in (False, True):
             if gamma == 0.0:
-                yield outline("area", boundary, pulse_area, NEAR_NEGATIVE_AXIS, mirrored)
-            yield outline("line", boundary, NEGATIVE_AXIS, MIDDLE_OF_NEGATIVE_AXIS, mirrored)
+                yield outline("area", boundary, pulse_area, POINT_IN_PULSE_AREA, mirrored)
+            yield outline("line", boundary, ENDS_OF_LINE, MIDDLE_OF_LINE, mirrored)
 
 
 def corners_of_pulse_area(damping_ratio: float, release: str, still_fraction: float) -> np.ndarray:
@@ -112,11 +112,12 @@ def corners_of_pulse_area(damping_ratio: float, release: str, still_fraction: fl
     In this area the left level is negative, and the right level is positive but small compared
     with the size of the left one. With a larger right level, ruptures are cracks.
     """
-    # A rupture is a pulse up to this ratio of the positive level to the size of the negative one.
-    level_ratios = largest_pulse_ratio(BORDER_LEVELS, damping_ratio, release, still_fraction)
-    negative_levels = -BORDER_LEVELS / level_ratios
-    border = np.column_stack([negative_levels, BORDER_LEVELS])
-    end_on_axis = (negative_levels[-1], 0.0)
+    # A rupture is a pulse up to this ratio of the right level to the size of the left one.
+    level_ratios = largest_pulse_ratio(BORDER_RIGHT_LEVELS, damping_ratio, release, still_fraction)
+    left_levels = -BORDER_RIGHT_LEVELS / level_ratios
+    border = np.column_stack([left_levels, BORDER_RIGHT_LEVELS])
+    # From its end the area reaches down to the axis on which the right level is 0.
+    end_on_axis = (left_levels[-1], 0.0)
     return np.vstack([[(0.0, 0.0)], border, [end_on_axis]])
 
 

@@ -229,32 +229,34 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
 
     smooth_push : push that a pulse would have far away without roughness
     """
-    # Part pulse, with one row for each run.
     parameters = ensemble.parameters
-    fates = [fate_of_pulse(run, 1, parameters["stop"]) for run in ensemble.runs]
-    integrals = [prestress_integral(profile) for profile in ensemble.profiles]
-    pulses = pd.DataFrame(fates).assign(part="pulse")
-    pulses["balance"] = [balance_position(CELL_MIDDLES, integral) for integral in integrals]
-    runs_with_integrals = zip(ensemble.runs, integrals, strict=True)
-    end_states = [end_state(run, integral) for run, integral in runs_with_integrals]
-    pulses = pulses.join(pd.DataFrame(end_states))
+    cell_of_start = int(np.searchsorted(CELL_MIDDLES, START))
+    fates: list[Fate] = []
+    pulse_rows, pushes_at_start = [], []
+    for run, profile in zip(ensemble.runs, ensemble.profiles, strict=True):
+        integral = prestress_integral(profile)
+        fate = fate_of_pulse(run, 1, parameters["stop"])
+        row = fate._asdict() | {"part": "pulse"}
+        row["balance"] = balance_position(CELL_MIDDLES, integral)
+        pulse_rows.append(row | end_state(run, integral))
+        fates.append(fate)
+        pushes_at_start.append(push_at(integral, cell_of_start))
+    pulses, pushes = pd.DataFrame(pulse_rows), np.array(pushes_at_start)
 
     # Part survival. The random walk of each pulse begins with its push at START.
-    index_of_start = int(np.searchsorted(CELL_MIDDLES, START))
-    pushes = np.array([push_at(integral, index_of_start) for integral in integrals])
     curve = survival(fates).assign(part="survival")
     curve["predicted"] = predicted_survival(curve["distance"].to_numpy(), pushes, parameters)
 
     # Part ensemble, a single row. The diffusivity is the variance of the push per distance.
     variance_rate = diffusivity(parameters)
-    row = {"part": "ensemble"} | death_rate(fates, START)
+    numbers = {"part": "ensemble"} | death_rate(fates, START)
     # Distance over which the random walk of the push spreads by the mean push at START.
     death_scale = float(np.mean(pushes)) ** 2 / variance_rate
-    row |= {"push": smooth_push, "diffusivity": variance_rate, "death_scale": death_scale}
+    numbers |= {"push": smooth_push, "diffusivity": variance_rate, "death_scale": death_scale}
     # Survival at the largest distance.
-    row |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
-    row |= velocity_numbers(pulses[~pulses["died"]], variance_rate)
-    return pd.concat([pd.DataFrame([row]), pulses, curve]).assign(**parameters)
+    numbers |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
+    numbers |= velocity_numbers(pulses[~pulses["died"]], variance_rate)
+    return pd.concat([pd.DataFrame([numbers]), pulses, curve]).assign(**parameters)
 
 
 def velocity_numbers(alive: pd.DataFrame, variance_rate: float) -> dict[str, float]:
@@ -280,10 +282,11 @@ def velocity_numbers(alive: pd.DataFrame, variance_rate: float) -> dict[str, flo
 def predicted_survival(
     distances: np.ndarray, pushes: np.ndarray, parameters: Mapping[str, Any]
 ) -> np.ndarray:
-    """Return the mean over all pulses of the probability to survive to each distance.
+    """Return the mean over all pulses of the probability to survive to each distance, by theory.
 
     pushes : push of each pulse at START, where its random walk begins
     """
+    # The theory needs a positive distance, so distances up to START count as one cell beyond it.
     beyond_start = np.maximum(distances - START, CELL_WIDTH)
     # The probabilities have one row per distance and one column per pulse.
     probabilities = first_passage(beyond_start[:, np.newaxis], pushes, parameters)
@@ -309,11 +312,13 @@ def push_at(integral: np.ndarray, index: int) -> float:
 def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame:
     """Return the survival of more pulses over LONG_DISTANCE, without a simulation.
 
-    Each pulse dies where the integral of its pre-stress has fallen to 0.
+    Each pulse dies where the integral of its pre-stress, from the position at which the left front
+    stopped, has fallen to 0.
 
     ensemble : has the parameters of the rough pre-stress
     smooth_profile : the profile of the run without roughness
     """
+    # The random field of the ensemble, on a coarser grid and over a longer distance.
     field_parameters = ensemble.profiles[0]["rough"] | {
         "spacing": LONG_SPACING,
         "stop": LONG_DISTANCE,
@@ -326,8 +331,8 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
     smooth_prestress = prestress_of(smooth_profile)(x)
     fates = []
     for seed in range(FIRST_LONG_SEED, FIRST_LONG_SEED + LONG_SEEDS):
-        field = rough(**field_parameters | {"seed": seed}).tau
-        prestress = field * background_weight + smooth_prestress
+        field_parameters["seed"] = seed
+        prestress = rough(**field_parameters).tau * background_weight + smooth_prestress
         death = balance_position(x, LONG_SPACING * np.cumsum(prestress))
         fates.append(Fate(min(death, LONG_DISTANCE), died=bool(death < LONG_DISTANCE)))
     row = {"part": "long"} | death_rate(fates, START)
@@ -337,24 +342,27 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
 
 
 def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
-    """Return the velocity of the right pulse at the end of its run, simulated and by theory.
+    """Return the velocity at the crest of the right pulse at the end, simulated and by theory.
 
-    velocity : simulated velocity at the crest of the pulse, where it is largest
-    exact_velocity : half of the push where the wave that now meets the crest was sent out. This
-        wave left the right front there and has run to the left since.
+    Also return whether the rupture is still a crack.
+
+    velocity : simulated velocity at the crest, where the velocity is largest
+    exact_velocity : two waves meet at the crest. One left x_* and ran to the right. The other left
+        the right front, and ran to the left. The velocity is half of the integral of the pre-stress
+        between the points where they started.
     is_crack : True if the blocks near the nucleation, at START, still slide
 
     The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
     crest = crest_position(run, integral)
-    origin_of_wave = origin_on_front(run, crest)
-    integral_at_origin = float(np.interp(origin_of_wave, CELL_MIDDLES, integral))
-    # The push is the integral from x_*, where the integral is smallest.
-    push = integral_at_origin - integral[CELL_MIDDLES < 0.0].min()
+    start_on_front = start_of_left_running_wave(run, crest)
+    integral_to_front = float(np.interp(start_on_front, CELL_MIDDLES, integral))
+    # x_* is the position on the left where the integral is smallest.
+    integral_to_x_star = integral[CELL_MIDDLES < 0.0].min()
     first_block_beyond_start = np.searchsorted(run["x"], START)
     return {
         "velocity": float(np.interp(crest, run["x"], run["slip_velocity"])),
-        "exact_velocity": 0.5 * push,
+        "exact_velocity": 0.5 * (integral_to_front - integral_to_x_star),
         "is_crack": bool(np.isnan(run["stick_time"][first_block_beyond_start])),
     }
 
@@ -376,11 +384,11 @@ def crest_position(run: Recorded, integral: np.ndarray) -> float:
     return x_star + end_time - departure_time
 
 
-def origin_on_front(run: Recorded, position: float) -> float:
-    """Return the position at which a wave has left the right front.
+def start_of_left_running_wave(run: Recorded, position: float) -> float:
+    """Return where a wave that runs to the left started on the right front.
 
-    The wave runs to the left. If it left the front at X and time t, it is at X + t - end_time at
-    the end.
+    Its speed is 1. If it left the front at the position X and the time t, it is at X + t - end_time
+    at the end.
 
     position : position of the wave at the end
     """

@@ -78,10 +78,10 @@ def critical_depth(level: float, barrier: float, gamma: float, damping_ratio: fl
 def diffusivity(parameters: Mapping[str, Any]) -> float:
     """Return the variance of the integral of a rough field over a long distance, per distance.
 
-    It is 2 pi times the power spectrum of the field at the wave number k = 0. The spectrum is
-    proportional to (1 + k^2 l^2)^-(H + 1/2), where l is the correlation length and H the Hurst
-    exponent, and its integral over k is the variance of the field. The gamma functions come from
-    this integral, which is sqrt(pi) Gamma(H)/(l Gamma(H + 1/2)) without the factor.
+    This is 2 pi S(0), where S(k) is the power spectrum of the field. S(k) is proportional to
+    (1 + k^2 l^2)^-(H + 1/2), where l is the correlation length and H the Hurst exponent. The
+    integral of S(k) over all k is the variance of the field. From this follows
+    S(0) = variance l Gamma(H + 1/2)/(sqrt(pi) Gamma(H)).
     """
     hurst, deviation = parameters["hurst"], parameters["deviation"]
     shape = 2.0 * math.sqrt(math.pi) * gamma_function(hurst + 0.5) / gamma_function(hurst)
@@ -103,6 +103,7 @@ def first_passage(
     push : push of each pulse at the beginning; the two arrays are broadcast against each other
     """
     variance_rate, drift = diffusivity(parameters), parameters["level"]
+    # The Brownian motion starts at this height above the level at which it must end.
     height = push + MILNE * variance_rate / (2.0 * parameters["deviation"])
     spread = np.sqrt(variance_rate * distance)
     # The method of images: a mirror image of the walk starts at -height, with this weight.

@@ -147,7 +147,7 @@ def is_stable(
     )
     # A Scene is frozen, and this is how an attribute of it can be set without checks.
     object.__setattr__(scene, "max_step", step)
-    lattice = LATTICES[scheme](scene, None, scene.beta)
+    lattice = LATTICES[scheme](scene, samples=None, beta=scene.beta)
     # The lattice calls `stop_at_first_stick` each time after this number of steps.
     lattice.max_call_steps = CHECK_INTERVAL
 

@@ -56,18 +56,20 @@ def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
     """Return the number of deaths divided by the distance that all pulses have gone in total.
 
     Only deaths and distances beyond ``start`` count. The result also has the confidence interval.
+    The rate and the interval are NaN if no pulse passed ``start``.
     """
     passed = [fate for fate in fates if fate.distance > start]
     deaths = sum(fate.died for fate in passed)
     total_distance = sum(fate.distance - start for fate in passed)
+    divisor = total_distance if passed else math.nan
     low, high = poisson_interval(deaths)
     return {
         "pulses": len(fates),
         "deaths": deaths,
         "distance": total_distance,
-        "rate": deaths / total_distance,
-        "rate_low": low / total_distance,
-        "rate_high": high / total_distance,
+        "rate": deaths / divisor,
+        "rate_low": low / divisor,
+        "rate_high": high / divisor,
         "confidence": CONFIDENCE,
     }
 

@@ -24,7 +24,7 @@ class Prose(Environment):
 
 
 def _default_text(value: object) -> object:
-    """Return the value of an expression as it is written if no filter has turned it into a text.
+    """Return the text of a value to which no filter of the template was applied.
 
     A number gets three significant digits, None becomes "not measured", and a text stays as it is.
     """

@@ -45,12 +45,14 @@ def with_symbols(label: str) -> str:
 def main_numbers(run: pd.Series) -> pd.DataFrame:
     """Return the main measured numbers of a run, one in each row.
 
-    The columns are the name of the measured column (quantity), its label, its value, and its value
-    by exact theory (NaN if there is none).
+    quantity : name of the measured column
+    label : its label, from LABELS
+    value : its measured value
+    theory : its value by exact theory; NaN if there is none, or if it does not apply to the run
 
-    run : measured and predicted numbers of the run
+    The argument ``run`` has the measured and predicted numbers of the run.
     """
-    run = at_constant_levels(run)
+    run = without_invalid_predictions(run)
     rows = []
     for quantity, label in LABELS[run["boundary"]].items():
         value, theory = run.get(quantity, np.nan), run.get(f"exact_{quantity}", np.nan)
@@ -60,11 +62,11 @@ def main_numbers(run: pd.Series) -> pd.DataFrame:
     return numbers[np.isfinite(numbers["value"].astype(float))]
 
 
-def at_constant_levels(run: pd.Series) -> pd.Series:
+def without_invalid_predictions(run: pd.Series) -> pd.Series:
     """Return the numbers of a run, with NaN for predictions of steady theory that do not apply.
 
-    The theory of a side assumes that its front runs in a constant pre-stress. If the pre-stress is
-    given as a table, the front may not have reached a constant level.
+    Steady theory assumes that a front runs in a constant pre-stress. If the pre-stress is given as
+    a table, it may still vary where the front ends.
     """
     run = run.copy()
     for side, prefixes in PREDICTION_PREFIXES.items():

@@ -67,7 +67,7 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
     state.push("α is beyond αc: no pulse is steady, and the part that slides becomes ever wider.");
   }
   if (limits.length) {
-    state.push("Blank wedges: unknown,"
+    state.push("In the blank wedges the solution is unknown,"
       + " since the trailing edge there becomes slower than the waves.");
   }
   at("state").textContent = state.join(" ");

@@ -103,7 +103,8 @@ function rowsOf({ scene, rupture, exact, pulse, paper, steady }) {
     if (steady) rows.push(["that slip once steady", steady.slip, paper.slip]);
   }
   if (paper) {
-    rows.push(["pulses end at <i>α</i><sub>c</sub>", criticalRate(gamma, exact.speed), null]);
+    const limit = "no steady pulse above <i>α</i><sub>c</sub>";
+    rows.push([limit, criticalRate(gamma, exact.speed), null]);
   }
   return rows;
 }
