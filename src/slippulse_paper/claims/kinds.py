@@ -244,7 +244,8 @@ class Approximate(Claim):
         """Return the median ratio (measured), and statistics of the deviations of the runs.
 
         These are the median (deviation) with its uncertainty, the 90th percentile (ninety) and the
-        largest. They are left out if no run has a number. The fields exact_... have the deviations from exact theory.
+        largest. They are left out if no run has a number. The fields exact_... have the deviations
+        from exact theory.
         """
         usable_deviations = self.deviations[np.isfinite(self.deviations)]
         exact_median, exact_largest = self.from_exact
