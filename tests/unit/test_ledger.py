@@ -406,6 +406,7 @@ CLAIM |= {"predicted": 1.0, "measured": 1.25, "uncertainty": 0.01, "deviation": 
 CLAIM |= {"tolerance": 0.2, "further": {}, "why": "", "counted": True, "follows_from": []}
 CLAIM |= {"flips_at": [], "choices": [], "at_earlier": "", "beyond": False}
 ESTIMATE = {"kind": "approximate", "exact_largest": None, "largest": None}
+ESTIMATE |= {"deviation_uncertainty": 0.03}
 ALWAYS = {"kind": "qualitative", "predicted": 8.0, "held": 5, "undecided": 2, "tolerance": 0.0}
 AGAINST, HELD = ALWAYS | {"failed": 1}, ("all of 8", "5 of 8, 1 against, 2 undecided")
 READING = {"kind": "reading", "predicted": 7.0, "measured": 1.62, "tolerance": 0.05}
@@ -418,7 +419,7 @@ WHY = {
     "reproduced": ({"verdict": YES}, ""),
     "equation": ({}, "The deviation is 25 %, tolerance 20 %; the uncertainty is 1 %."),
     "zero predicted": (ZERO, "The deviation is 0.50, tolerance 0.1; the uncertainty is 0.0100."),
-    "estimate": (ESTIMATE, "The median deviation is 25 %, tolerance 20 %; the uncertainty is 1 %."),
+    "estimate": (ESTIMATE, "The median deviation is 25 %, tolerance 20 %; the uncertainty is 3 %."),
     "scaling": (
         {"kind": "scaling"},
         "The deviation is 0.25, tolerance 0.2; the uncertainty is 0.0100.",

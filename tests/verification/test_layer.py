@@ -199,5 +199,7 @@ def test_a_scene_outside_its_ranges_is_refused(key, value):
 
 
 def test_a_trail_needs_a_symmetric_scene():
-    with pytest.raises(ValueError, match=r"trail: 3\.0; allowed: a symmetric scene"):
+    with pytest.raises(
+        ValueError, match=r"trail: 3\.0; allowed: inf, unless the scene is symmetric"
+    ):
         replace(PULSE, trail=3.0, coupling=0.3)

@@ -243,8 +243,9 @@ class Approximate(Claim):
     def fields(self) -> dict[str, Any]:
         """Return the median ratio (measured), and statistics of the deviations of the runs.
 
-        These are the median (deviation), the 90th percentile (ninety) and the largest. They are
-        left out if no run has a number. The fields exact_... have the deviations from exact theory.
+        These are the median (deviation) with its uncertainty, the 90th percentile (ninety) and the
+        largest. They are left out if no run has a number. The fields exact_... have the deviations
+        from exact theory.
         """
         usable_deviations = self.deviations[np.isfinite(self.deviations)]
         exact_median, exact_largest = self.from_exact
@@ -262,6 +263,7 @@ class Approximate(Claim):
                 "uncertainty": uncertainty,
                 "predicted": 1.0,
                 "deviation": self.median.value,
+                "deviation_uncertainty": self.median.uncertainty,
                 "ninety": float(np.percentile(usable_deviations, 90.0)),
                 "largest": float(usable_deviations.max()),
             }

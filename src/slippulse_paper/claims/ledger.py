@@ -29,6 +29,8 @@ class Entry(SimpleNamespace):
     remark = False
     largest: Any = None
     exact_largest: Any = None
+    # Only estimates have a deviation that is a median, with an uncertainty of its own.
+    deviation_uncertainty: Any = None
 
     def predicted_text(self) -> str:
         """Return the prediction of the paper."""
@@ -112,7 +114,9 @@ class Entry(SimpleNamespace):
     def _sentence_on_deviation(self) -> str:
         """Return a sentence with the deviation and its uncertainty."""
         uncertainty = number(self.uncertainty)
-        if self._has_relative_deviation():
+        if self.deviation_uncertainty is not None:
+            uncertainty = percent(self.deviation_uncertainty)
+        elif self._has_relative_deviation():
             uncertainty = percent(self.uncertainty / abs(self.predicted))
         deviation = "median deviation" if self.kind == "approximate" else "deviation"
         # The text is, for example, "median 12 %, tolerance 20 %".
