@@ -323,7 +323,8 @@ def verified_run(make_options: Mapping[str, str]) -> tuple[dict[str, str], list[
     """Return the options and targets that `verify` uses.
 
     They are those of make. If make has no options that change results, the options are those of the
-    last run, and so are the targets if make has none.
+    last run. If make has no targets either, the target is "everything" if the last run made it. No
+    target means the targets that are made by default.
     """
     options, targets = result_options(make_options), targets_of(make_options)
     if not options:

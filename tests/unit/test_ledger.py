@@ -15,7 +15,7 @@ from slippulse_paper.claims import rules
 from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
 from slippulse_paper.claims.evidence import Evidence, agreed_answers, fit_exponent
-from slippulse_paper.claims.findings import collapse, findings
+from slippulse_paper.claims.findings import findings, length_changes_by_damping
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
 from slippulse_paper.claims.paper_claims import (
@@ -348,7 +348,7 @@ def test_a_sweep_may_have_several_release_rules():
         def finest(self, name):
             return runs
 
-    numbers = collapse(Sweeps())
+    numbers = length_changes_by_damping(Sweeps())
     assert (numbers["stress_change"], numbers["stress_scenes"]) == (2.0, 4.0)
     assert judge_rise_with_prestress(runs, "transition_length").decided == [True] * 4
 

@@ -83,6 +83,11 @@ def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") ->
     return float(np.max(times)) if is_unknown else np.inf
 
 
+def is_known_to_end(run: AnyRun, side: str = "right") -> bool:
+    """Return whether a front is known until the end of the run, as it always is on a lattice."""
+    return bool(np.isinf(known_until(run, side)))
+
+
 def front_position(
     run: AnyRun, time, side: str = "right", edge: str = "release_time"
 ) -> np.ndarray:
@@ -127,11 +132,11 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
 
     If the front pauses within this part and is faster than the waves after the pause, only the path
     after the pause is fitted. The line is NaN if there are fewer than MIN_FITTED_BLOCKS blocks, or
-    if an exact solution does not know the whole path.
+    if the front is not known until the end, which may be so in an exact solution.
     """
     times, distances = front_path(run, side)
     is_in_window = distances >= (1.0 - window) * np.max(distances, initial=0.0)
-    if is_in_window.sum() < MIN_FITTED_BLOCKS or np.isfinite(known_until(run, side)):
+    if is_in_window.sum() < MIN_FITTED_BLOCKS or not is_known_to_end(run, side):
         return NO_LINE
     times, distances = times[is_in_window], distances[is_in_window]
     # A wait is a pause if it is long compared with the total and with the mean of all waits.

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..data.points import AnyRun
-from .front_paths import fit_front, front_path, known_until
+from .front_paths import fit_front, front_path, is_known_to_end
 
 # A stretch of sliding blocks is a pulse if its peak velocity is at least this fraction of that of
 # the leading pulse. Slower stretches are remains of the nucleation.
@@ -100,13 +100,14 @@ def front_at_end(
 ) -> tuple[float, bool]:
     """Return the distance of the right front from x = 0 at the end, and True if it has stopped.
 
-    The distance is NaN if no block was released, or if an exact solution does not know it.
+    The distance is NaN if no block was released, or if the front is not known until the end, which
+    may be so in an exact solution.
 
     distance, velocity : distances and slip velocities of the blocks on the right
     speed : front speed
     """
     release_times, released_distances = front_path(run)
-    if not released_distances.size or np.isfinite(known_until(run)):
+    if not released_distances.size or not is_known_to_end(run):
         return np.nan, False
     last_distance, dx = float(released_distances[-1]), run.attrs["dx"]
     # The distance that the front has moved since the last release, if it has kept its speed.

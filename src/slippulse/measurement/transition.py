@@ -12,7 +12,7 @@ from ..data.points import AnyRun
 from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
 from ..model.scene import gamma_without_extra_terms
-from .front_paths import arrival, front_path, front_position, known_until
+from .front_paths import arrival, front_path, front_position, is_known_to_end
 
 # The lattice holds up the left front if the front waits between two blocks for more than this
 # fraction of T_trans. The relative error of T_trans is up to 1.5 times the fraction that the front
@@ -90,10 +90,10 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     if not np.isnan(time):
         state = "stalled" if wait_fraction > STALLED_WAIT_FRACTION else "resolved"
         right_distance = float(front_position(run, time, "right"))
-    # The last release is not known if an exact solution does not know the front until the end.
+    # An exact solution may not know the front until the end. Then the last release is not known.
     release_times, distances = front_path(run, "left")
     last_time, last_distance = np.nan, np.nan
-    if release_times.size and np.isinf(known_until(run, "left")):
+    if release_times.size and is_known_to_end(run, "left"):
         last_time, last_distance = float(np.max(release_times)), float(distances[-1])
     return {
         "transition_time": time,

@@ -203,24 +203,26 @@ def _nucleation_width(prestress: Prestress) -> float:
 
 
 def _spacings_with_springs(demand: Demand) -> list[float]:
-    """Return the largest spacing that each measured quantity allows, in a scene with leaf springs.
+    """Return the largest spacing that each requirement allows, in a scene with leaf springs.
 
+    One kind of requirement is that MIN_BLOCKS blocks lie across the nucleation and across each
+    pulse. The other is that the error of a measured quantity is at most the error of the demand.
     Each error is a constant times a power of dx, and is solved for dx.
     """
     nucleation_length = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
-    # The part of the errors of T_trans and L_trans that the nucleation causes, divided by dx.
-    nucleation_error = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
-    spacings = [nucleation_length / MIN_BLOCKS, demand.error / nucleation_error]
+    # The nucleation causes this part of the errors of T_trans and L_trans. It is divided by dx.
+    nucleation_error_per_dx = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
+    spacings = [nucleation_length / MIN_BLOCKS, demand.error / nucleation_error_per_dx]
     for level in demand.levels:
         if level > 0.0:
-            spacings += _spacings_at_level(demand, level, nucleation_error)
+            spacings += _spacings_at_level(demand, level, nucleation_error_per_dx)
     return spacings
 
 
-def _spacings_at_level(demand: Demand, level: float, nucleation_error: float) -> list[float]:
-    """Return the largest spacing that each quantity of a front and pulse at a level allows.
+def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: float) -> list[float]:
+    """Return the largest spacing that each requirement on a front and pulse at a level allows.
 
-    nucleation_error : error of T_trans and L_trans because of the nucleation, divided by dx
+    nucleation_error_per_dx : error of T_trans and L_trans because of the nucleation, divided by dx
     """
     speed = cached_front_speed(level, demand.damping_ratio, demand.release)
     # In the limit dx -> 0, damping affects the pulse only through the front speed.
@@ -229,12 +231,12 @@ def _spacings_at_level(demand: Demand, level: float, nucleation_error: float) ->
     layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
     # The error of the front speed is this constant times (dx/width)^2.
     speed_error = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
-    # The errors of T_trans and L_trans are this constant times dx.
-    transition_error = nucleation_error + SLOW_FRONT_ERROR / width
+    # The errors of T_trans and L_trans, divided by dx.
+    transition_error_per_dx = nucleation_error_per_dx + SLOW_FRONT_ERROR / width
     spacings = [
         width / MIN_BLOCKS,
         width * math.sqrt(demand.error / speed_error),
-        demand.error / transition_error,
+        demand.error / transition_error_per_dx,
     ]
     if demand.fields:
         # The errors of pulse width, slip and peak velocity are this constant times dx/width.
@@ -260,7 +262,10 @@ def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]
 
 
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
-    """Return the largest spacing that each measured quantity allows, under a stress boundary."""
+    """Return the largest spacing that each requirement allows, under a stress boundary.
+
+    The requirements are of the same kinds as in `_spacings_with_springs`.
+    """
     error, damping_ratio = demand.error, demand.damping_ratio
     distances = _distances_to_zero(demand.levels, prestress)
     spacings = [length / MIN_BLOCKS for length in (demand.peak_width, *distances)]

@@ -219,8 +219,9 @@ def evaluate_difference(out, rows, m, top, s):
 def add_difference(motion, difference, first, last, block, now, step_end, top):
     """Add the change that an event makes to the motion of blocks first..last-1.
 
-    It changes their velocities at the end of the step, and the time derivatives of their slip,
-    which the lattice keeps for the start of the step.
+    It changes their velocities at the end of the step, the slip that events add in this step
+    (``motion.event_slip``), and the time derivatives of their slip, which the lattice keeps for the
+    start of the step.
 
     difference : the change of slip by the event, as time derivatives at the time of the event
     block, now : block and time of the event, since the step began
@@ -236,7 +237,7 @@ def add_difference(motion, difference, first, last, block, now, step_end, top):
     evaluate_difference(values, rows, VELOCITY, top, time_to_end)
     for i in block_range(first, last):
         end_velocity[i] += values[i + column_of_block_0]
-    # The slip itself is kept apart until the step ends.
+    # The added slip is kept apart from the slip in ``w`` until the step ends.
     evaluate_difference(values, rows, SLIP, top, -now)
     for i in block_range(first, last):
         event_slip[i] += values[i + column_of_block_0]
@@ -267,10 +268,14 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
 
 @kernel_function(inline=True)
 def update_mirror_image(motion, top):
-    """Copy the motion of block 2 to block 0, its mirror image on a mirrored lattice."""
+    """Copy the change of block 2 by an event to block 0, its mirror image on a mirrored lattice.
+
+    An event does not change the slip at the start of the step, row SLIP of ``w``. The slip that it
+    adds is kept in ``motion.event_slip`` until the step ends.
+    """
     w, event_slip = motion.derivatives, motion.event_slip
     event_slip[0] = event_slip[2]
-    for m in range(1, top + 1):
+    for m in range(VELOCITY, top + 1):
         w[m, 0] = w[m, 2]
 
 

@@ -105,7 +105,9 @@ def take_samples(recorder, motion, tally, start, end, order):
             # Positions outside the lattice have no block.
             if i < 0:
                 continue
-            # Changes since the step began, by Horner's rule.
+            # Changes since the step began, by Horner's rule. An event changes the velocity and the
+            # higher derivatives in ``w`` at once. The slip that it adds at the start of the step is
+            # kept in ``event_slip`` until the step ends.
             slip_change, velocity_change = 0.0, 0.0
             for k in range(order + 1, 0, -1):
                 slip_change = s / k * (w[k, i] + slip_change)

@@ -209,9 +209,10 @@ class DependenceDomains:
 
         They are the derivatives of the formula 2 du/dt = Int tau E K dx over the front t = T(x),
         from x_l to x_r. With g = T - x and h = T + x, the argument of the kernel K is
-        k (xi - g) (eta - h). So with xi, K changes by k (eta - h) K', the left end x_l (where
-        g = xi) by dx/dg, and the decay factor E by -alpha/4 E. With eta, K changes by
-        k (xi - g) K', the right end x_r (where h = eta) by dx/dh, and E by -alpha/4 E.
+        k (xi - g) (eta - h). By xi, the derivative of K is k (eta - h) K', that of the left end
+        x_l (where g = xi) is dx/dg, and that of the decay factor E is -alpha/4 E. By eta, the
+        derivative of K is k (xi - g) K', that of the right end x_r (where h = eta) is dx/dh, and
+        that of E is -alpha/4 E. The other end does not move.
         """
         decay_left, decay_right = self._decay_at_ends()
         # E tau dx/dg at x_l, and E tau dx/dh at x_r.
@@ -280,14 +281,24 @@ class DependenceDomains:
         return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(braces)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
-        """Return the strain du/dx at the points (y, t), the derivative by y of the formula
+        """Return the strain du/dx at the points (y, t).
+
+        The slip u is known from the formula
 
         2 u = 2 p(y) - E p(x_l) - E p(x_r)
-              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] }.
+              + Int E { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] },
 
-        If y increases at constant t, xi decreases and eta increases at the same rate. So the
-        argument z of the kernel K changes by k [(xi - g) - (eta - h)], and the square bracket by
-        dg + dh. The decay factor E does not change. p is the static solution.
+        where p is the static solution, E the decay factor, and K the kernel with the argument
+        z = k (xi - g) (eta - h). The derivative of this formula by y at constant t is
+
+        2 du/dx = 2 p'(y) - E p'(x_l) - E p'(x_r)
+                  + (alpha - k (t - T))/2 E p at x_l - (alpha - k (t - T))/2 E p at x_r
+                  + Int E d{ ... }/dy.
+
+        The second line, and p' at the ends, include the motion of the ends x_l and x_r. In the
+        integral, xi = t - y has the derivative -1 by y, and eta = t + y has the derivative 1. So
+        dz/dy is k [(xi - g) - (eta - h)], the derivative of the square bracket is dg + dh, and E
+        does not depend on y.
         """
         k, alpha = self.stiffness, self.alpha
         strain = self._minus_mean_of_ends(static_solution, 1)
@@ -314,11 +325,11 @@ class DependenceDomains:
             z_slope = nodes.xi_minus_g - nodes.eta_minus_h
             return z_slope * (by_kernel + by_kernel_slope) + by_bracket
 
-        # The ends of the integral move with y. At both of them K = 1 and K' = -1/4, because z = 0.
+        # The terms with alpha - k (t - T). At both ends K = 1 and K' = -1/4, because z = 0.
         p_left, p_right = self._decayed_at_ends(static_solution, 0)
         elapsed_left, elapsed_right = self._elapsed_at_ends()
-        by_motion_of_ends = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
-        strain += by_motion_of_ends - 0.25 * alpha * (p_right - p_left)
+        terms_with_k = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
+        strain += terms_with_k - 0.25 * alpha * (p_right - p_left)
         return strain + 0.5 * self._integrate(derivative_of_braces)
 
     def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:

@@ -326,21 +326,25 @@ class PartWithEdge(Part):
         return self.curve.edges[-1] - self.curve.edges[0]
 
     def _not_in_future_of_jumps(self, knots: Knots, k: np.ndarray) -> np.ndarray:
-        """Return the intervals of k, except those that lie completely in the future of a jump.
+        """Return the intervals k, except those that lie completely in the future of a jump.
 
-        A knot is in the future of a jump of the edge if a wave from the jump arrives there before
-        the knot sticks. Nothing is known about the edge there.
+        A knot counts as in the future of a jump of the edge if a wave from the jump certainly
+        arrives there before the knot sticks. Nothing is known about the edge there.
+
+        k : numbers of intervals; interval k lies between the knots k and k + 1
         """
         is_kept = np.full(k.size, True)
         jumps = k[knots.has_jump(k)]
         for jump, before_jump in zip(jumps, knots.ends_before_jumps(jumps), strict=True):
-            # The edge runs from the knot before the jump to the jump faster than the waves, whose
-            # speed is 1. So the jump is later than this knot by less than the length of the
-            # interval, and a wave from the jump is back at the knot before two lengths have passed.
-            # It arrives at another knot after their distance at the latest.
+            # At this time at the latest, a wave from the jump is back at the knot before the jump.
+            # The edge ran from this knot to the jump faster than the waves, whose speed is 1. So
+            # neither the way there nor the way back takes longer than the length of the interval.
             length = knots.x[jump + 1] - knots.x[jump]
-            distance = np.abs(knots.x - knots.x[before_jump])
-            is_outside = knots.stick - distance < knots.stick[before_jump] + 2.0 * length
+            latest_return = knots.stick[before_jump] + 2.0 * length
+            # A wave that leaves the knot before the jump at this time arrives at another knot at
+            # the moment at which the other knot sticks.
+            departure_time = knots.stick - np.abs(knots.x - knots.x[before_jump])
+            is_outside = departure_time < latest_return
             is_kept &= is_outside[k] | is_outside[k + 1]
         return k[is_kept]
 

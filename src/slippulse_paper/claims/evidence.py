@@ -208,7 +208,7 @@ class Evidence:
         return f"{'; '.join(parts)}." if parts else ""
 
     def finest(self, *simulations: str, where: str = "") -> pd.DataFrame:
-        """Return the runs of some simulations on the finest lattice.
+        """Return the runs of some simulations on the finest lattice, without flagged runs.
 
         The columns extrapolated_QUANTITY and uncertainty_QUANTITY come from the grid study.
 

@@ -24,7 +24,7 @@ def findings(
 ) -> list[dict]:
     """Return each finding with its id, its numbers by name, its text and its source tables.
 
-    damping_ratio : damping ratio of the figures, which expressions may use
+    damping_ratio : damping ratio of the figures, which expressions may use as the column figures
     entries : text, source and expressions of each finding, from manuscript/claims.yaml
     """
     all_findings = []
@@ -47,7 +47,7 @@ def all_numbers(
 
     The result is empty if a changed configuration has no runs for some of the numbers.
 
-    damping_ratio : damping ratio of the figures, which expressions may use
+    damping_ratio : damping ratio of the figures, which expressions may use as the column figures
     expression_groups : arguments of `numbers`, one mapping for each table
     """
     values: dict[str, float] = {}
@@ -69,12 +69,13 @@ def numbers(
 ) -> dict[str, float]:
     """Evaluate expressions over the columns of one table; empty if no row is selected.
 
-    table : name of the table
+    damping_ratio : damping ratio of the figures, which expressions may use as the column figures
+    table : name of the table. If it is a simulation that has a grid study, its rows are those of
+        `Evidence.finest`: the results of the grid study are added, and flagged runs are left out
     take : expressions by the name of the number
     where : condition that selects rows; all rows if it is empty
     """
     rows = evidence.finest(table) if table in evidence.swept else evidence.tables[table]
-    # In expressions "figures" is the damping ratio of the figures.
     rows = rows.assign(figures=damping_ratio)
     rows = rows[evaluated(rows, where)]
     if rows.empty:
@@ -82,7 +83,7 @@ def numbers(
     return {name: float(value_of(rows, expression)) for name, expression in take.items()}
 
 
-def collapse(evidence: Evidence) -> dict[str, float]:
+def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
     """Return by how much damping changes L_trans, for each boundary condition.
 
     ..._change : median ratio of L_trans at the largest damping ratio to L_trans without damping
@@ -126,7 +127,7 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
     }
 
 
-def never_arrives(evidence: Evidence) -> dict[str, float]:
+def arrest_time_ratios(evidence: Evidence) -> dict[str, float]:
     """Return the median ratio of the exact arrest time to the paper's estimate.
 
     There is one median for each fraction of the path at which a front may count as arrested.
@@ -134,8 +135,8 @@ def never_arrives(evidence: Evidence) -> dict[str, float]:
     judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
     medians = {}
     for fraction, median in transition.median_ratio_by_fraction(judged.combinations).items():
-        # Leave out lattices. They are measured at their last release, and have this text instead of
-        # a fraction.
+        # Leave out the median of lattices. They are measured at the last release, and this median
+        # has the text "last release" in place of a fraction.
         if isinstance(fraction, float):
             medians[f"median_{100.0 * fraction:.0f}"] = median
     return medians
@@ -160,8 +161,8 @@ def backward_threshold(evidence: Evidence) -> dict[str, float]:
 # Findings whose numbers are not expressions over the columns of one table.
 COMPUTED_FINDINGS: dict[str, Callable[[Evidence], dict]] = {
     "backward_threshold": backward_threshold,
-    "collapse_against_damping": collapse,
-    "front_never_arrives": never_arrives,
+    "collapse_against_damping": length_changes_by_damping,
+    "front_never_arrives": arrest_time_ratios,
     "layer_in_plane": layer.layer_in_plane,
     "pulses_on_rough_prestress": rough.rough_numbers,
     "published_figure_made_with": best_fit,

@@ -456,10 +456,19 @@ def map_numbers(evidence: Evidence) -> dict[str, float]:
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Return the numbers for the section on the layer in two dimensions.
 
-    Most of them are the smallest and the largest value of a quantity (NAME_low and NAME_high).
-    `pulse_quantities` explains these quantities. Others are changes from the second finest to the
-    finest grid (NAME_change), and numbers from `speeds_above_waves`, `far_numbers`, `across_a_step`
-    and `map_numbers` (map_NAME).
+    These numbers have the names below. The numbers of `speeds_above_waves`, `far_numbers` and
+    `across_a_step` are returned, too.
+
+    pulses : number of pulses
+    level : level of the pre-stress that most pulses have
+    formula_speed : front speed by the paper's formula, at this level
+    thinnest_formula : width by the paper's formula, at this level and the smallest gamma
+    level_spread : see `spread_with_level`
+    crossings, brittle_energy : the constants CROSSINGS_OF_TRANSITION and BRITTLE_ENERGY
+    QUANTITY_low, QUANTITY_high : smallest and largest value of a quantity. These are the quantities
+        of `pulse_quantities`, and first_stick, free and longer, which are explained below
+    QUANTITY_change : largest relative change from the second finest to the finest grid
+    map_NAME : see `map_numbers`
     """
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
@@ -479,6 +488,8 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     # back. The part patch has short runs, until the region in which the rupture starts has stuck.
     patch = finest_rows(evidence.tables["layer"], "patch")
     quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
+    # In the part free the top may rise. Its sliding time is divided by the crossing time, and then
+    # by the sliding time with a held top.
     quantities["free"] = sliding_in_crossings(finest_rows(rows, "free"))
     quantities["longer"] = times_longer_with_free_top(rows)
     for name, values in quantities.items():
@@ -639,8 +650,11 @@ def spread_with_level(pulses: pd.DataFrame) -> float:
 def across_a_step(evidence: Evidence) -> dict[str, float]:
     """Return the final slip of pulses that enter another pre-stress, and of uniform runs.
 
+    lower, higher : the two levels of the pre-stress
+    step_distance : distance of the last station, at which the final slip is measured
     upwards, downwards : final slip of the pulse that enters a higher or a lower pre-stress
-    uniform_higher, uniform_lower : final slip of a pulse in this pre-stress from the start
+    uniform_higher, uniform_lower : final slip of a pulse in the higher or lower pre-stress from the
+        start
     upwards_difference, downwards_difference : relative difference between the slip of the pulse
         that enters a pre-stress and of the one in it from the start, on the grid where it is larger
     """

@@ -51,10 +51,13 @@ class Always(NamedTuple):
     sweeps : names of the sweeps
     where : condition that selects runs; all runs if it is empty
     holds : condition that must hold; if it is empty, the regime must be one of ``ends``
-    decidable, ends : see `Evidence.holds_in_runs`
+    decidable : condition under which lattices can decide; always if it is empty
+    ends : regimes. If lattices cannot decide or disagree, the exact solution must have one of them;
+        without ``ends`` the run is then undecided
     counted : conditions that select runs whose regimes are counted, by words for the table of
         claims
-    numbers : expressions for additional numbers, by words for the table of claims
+    numbers : expressions over the runs of the first sweep, for additional numbers, by words for the
+        table of claims
     """
 
     sweeps: Sequence[str]
@@ -69,7 +72,9 @@ class Always(NamedTuple):
 def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     """Judge a claim whose rule is a condition that must hold in each run of some sweeps.
 
-    The rule may also ask for additional numbers: counts of regimes, and values of expressions.
+    In each run the two finest lattices decide. If they disagree or cannot decide, the exact
+    solution does (`Evidence.holds_in_runs`). The rule may also ask for additional numbers: counts
+    of regimes, and values of expressions over the runs of the first sweep.
 
     keys : fields of the rule, which are explained at `Always`
     """
@@ -80,12 +85,14 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     if not holds:
         # Without a condition, the rupture must end in one of these regimes.
         holds = f"regime in {rule.ends}"
-    # Where lattices cannot decide, the exact solution must end in one of the regimes rule.ends.
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
         decided += evidence.holds_in_runs(sweep, rule.where, holds, rule.decidable, rule.ends)
-    table = evidence.tables[rule.sweeps[0]]
-    further = {words: float(value_of(table, number)) for words, number in rule.numbers.items()}
+    first_sweep = evidence.tables[rule.sweeps[0]]
+    further = {
+        words: float(value_of(first_sweep, expression))
+        for words, expression in rule.numbers.items()
+    }
     for words, condition in rule.counted.items():
         regimes = evidence.finest(*rule.sweeps, where=condition)["regime"].value_counts()
         further |= {f"{words}: {regime}": float(count) for regime, count in regimes.items()}

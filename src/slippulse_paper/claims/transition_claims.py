@@ -206,9 +206,11 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
 
 
 def median_ratio_by_fraction(combinations: Sequence[Combination]) -> dict[float | str, float]:
-    """Return the median of measured/estimated for each fraction of the path.
+    """Return the median ratio of measured and estimated numbers, by the fraction of the path.
 
-    It is NaN if no run has a number. All other choices are those of the first combination.
+    At this fraction the left front counts as arrested. Runs that are measured at the last release
+    have the text LAST_RELEASE_FRACTION instead of a fraction. The median is NaN if no run has a
+    number. All other choices are those of the first combination.
     """
     first = combinations[0].choice
     fixed_names = ("release", "damping_ratio", "nucleation")
@@ -222,12 +224,17 @@ def median_ratio_by_fraction(combinations: Sequence[Combination]) -> dict[float 
 
 
 def described_median_ratios(combinations: Sequence[Combination]) -> dict[str, float]:
-    """Return `median_ratio_by_fraction` with words for the table of claims as keys, sorted."""
-    by_words = {}
+    """Return the median ratio of measured and estimated numbers for each end of the path.
+
+    The numbers are those of `median_ratio_by_fraction`. The keys are labels for the table of
+    claims, in alphabetical order, such as "median ratio, end at last release".
+    """
+    by_label = {}
     for fraction, median in median_ratio_by_fraction(combinations).items():
+        # A fraction that is a text, such as "last release", is already in words.
         end = fraction if isinstance(fraction, str) else f"{text_of_value(fraction)} of the path"
-        by_words[f"median ratio, end at {end}"] = median
-    return dict(sorted(by_words.items()))
+        by_label[f"median ratio, end at {end}"] = median
+    return dict(sorted(by_label.items()))
 
 
 def judge_each(

@@ -1,4 +1,4 @@
-"""Figure 5: measured L_trans and T_trans as functions of those by the paper's formulas.
+"""Figure 5: measured L_trans and T_trans as functions of the paper's formulas for them.
 
 There is one marker for each run of one sweep for each boundary condition.
 """
@@ -39,7 +39,7 @@ BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one column of panels for each boundary condition.
 
-    The first two rows show the measured length and time as functions of those by the formula, with
+    The first two rows show the measured length and time as functions of the paper's formulas, with
     the ratio of both in insets. The third row shows the ratio of the lengths at full size.
     """
     figure, panels = new_panels(PAGE_WIDTH, 6.7, "ab;cd;ef", height_ratios=(1.0, 1.0, 0.65))

@@ -32,8 +32,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     """Return one row for each quantity of a pulse, in three parts, which the column role names.
 
     theory : exact values divided by the paper's formula (column over_paper) at each damping ratio
-    simulation : measured values (column value), exact ones (theory), and those by the paper's
-        formula (paper)
+    simulation : measured values (column value), exact values (theory), and the values of the
+        paper's formula (paper)
     refined : measured values on lattices of several spacings (value), and their limit (theory)
     """
     runs, study = tables["pulse_damping"], tables["damped_pulse"]

@@ -316,7 +316,7 @@ def check_unchanged(states: Mapping[str, FileState]) -> None:
 def _record_of(path: str) -> Record | None:
     """Return the record that has a file among its outputs, or None if there is none."""
     folder = Path(path).parent / RECORD_FOLDER
-    # The records of a folder are cached. A later modification time makes them read again.
+    # The records of a folder are cached, and read again when its modification time has changed.
     records = _records_in(str(folder), _modification_time(folder))
     return records.get(Path(path).name)
 

@@ -4,7 +4,7 @@ The checks are the parts of the table:
 
 grid : death rates on finer lattices
 length : death rates on longer tracks
-balance : deaths under a stress boundary, compared with the balance of the pre-stress
+balance : positions at which pulses die under a stress boundary, compared with theory
 exact : final slip, compared with the exact solution
 memory : distance beyond a bump of the pre-stress up to which the final slip depends on the bump
 """
@@ -105,13 +105,14 @@ def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     profiles: list[Profile] = []
     for ensemble in ensembles_of(sweep):
         profiles += ensemble[:GRID_SEEDS]
-    stop = profiles[0]["rough"]["stop"]
+    # The rough pre-stress ends at this distance, which is the same in all ensembles as shipped.
+    end_of_track = profiles[0]["rough"]["stop"]
     rows = []
     for dx in GRID_SPACINGS:
         fates = []
         for scene in scenes_of(sweep, profiles, dx=[dx]):
             run = simulated_run(scene)
-            fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
+            fates += [fate_of_pulse(run, side, stop=end_of_track) for side in (1, -1)]
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
 
@@ -131,7 +132,7 @@ def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     fates = []
     for scene in scenes_of(sweep, profiles, duration=duration, dx=[LENGTH_SPACING]):
         run = simulated_run(scene)
-        fates += [fate_of_pulse(run, side, end) for side in (1, -1)]
+        fates += [fate_of_pulse(run, side, stop=end) for side in (1, -1)]
     # A pulse that leaves the first half alive counts as alive at the end of this half.
     fates_in_first_half = [
         Fate(min(fate.distance, middle), fate.died and fate.distance < middle) for fate in fates
@@ -151,22 +152,24 @@ def with_longer_track(profile: Profile) -> Profile:
 
 
 def balance_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
-    """Compare deaths on lattices with the balance of the pre-stress, one row for each spacing.
+    """Compare where pulses die on lattices and by theory, with one row for each spacing.
 
-    By theory a pulse dies at its balance position, up to which the integral of the pre-stress is 0.
-    On a lattice it dies before it gets there. The column change has the median of the distance that
-    is left, over all pulses that die within BALANCE_DURATION.
+    By theory the right pulse dies at its balance position: the integral of the pre-stress, from
+    where the left front stopped to this position, is 0. On a lattice it dies before it gets there.
+    The column change has the median distance between the two positions, over all right pulses that
+    die within BALANCE_DURATION.
     """
     profiles = ensemble[:BALANCE_SEEDS]
     integrals = [prestress_integral(profile) for profile in profiles]
     balance_positions = [balance_position(CELL_MIDDLES, integral) for integral in integrals]
-    stop = ensemble[0]["rough"]["stop"]
+    # The rough pre-stress ends at this distance, which all profiles of an ensemble share.
+    end_of_track = ensemble[0]["rough"]["stop"]
     rows = []
     for dx in BALANCE_SPACINGS:
         scenes = scenes_of(sweep, profiles, dx=[dx], duration={"time": BALANCE_DURATION})
         gaps = []
         for scene, balance in zip(scenes, balance_positions, strict=True):
-            right_pulse = fate_of_pulse(simulated_run(scene), 1, stop)
+            right_pulse = fate_of_pulse(simulated_run(scene), side=1, stop=end_of_track)
             if right_pulse.died:
                 gaps.append(balance - right_pulse.distance)
         row = {"part": "balance", "dx": dx, "change": np.median(gaps)}

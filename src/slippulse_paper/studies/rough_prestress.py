@@ -227,7 +227,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     Only the right pulse counts. Its death and its velocity are compared with the integral of the
     pre-stress of its own run. The survival curve is compared with that of a random walk.
 
-    smooth_push : push that a pulse would have far away without roughness
+    smooth_push : push (see `push_at`) that a pulse would have far away without roughness
     """
     parameters = ensemble.parameters
     cell_of_start = int(np.searchsorted(CELL_MIDDLES, START))
@@ -235,7 +235,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     pulse_rows, pushes_at_start = [], []
     for run, profile in zip(ensemble.runs, ensemble.profiles, strict=True):
         integral = prestress_integral(profile)
-        fate = fate_of_pulse(run, 1, parameters["stop"])
+        fate = fate_of_pulse(run, side=1, stop=parameters["stop"])
         row = fate._asdict() | {"part": "pulse"}
         row["balance"] = balance_position(CELL_MIDDLES, integral)
         pulse_rows.append(row | end_state(run, integral))
@@ -262,9 +262,10 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
 def velocity_numbers(alive: pd.DataFrame, variance_rate: float) -> dict[str, float]:
     """Return the mean and the spread of the velocities of living pulses, and the spread by theory.
 
-    By theory the velocity is half of the push, and the variance of the push grows with distance
-    like that of a random walk. The result also has the number of cracks among the pulses, and the
-    median deviation of a velocity from the exact one (velocity_off).
+    By theory the velocity of a pulse is half of its push, which is the integral of the pre-stress
+    from x_*, where the left front stopped, to the pulse. The push makes a random walk: its variance
+    grows in proportion to the distance. The result also has the number of cracks among the pulses,
+    and the median deviation of a velocity from the exact one (velocity_off).
 
     alive : rows of the part pulse, for the pulses that have not died
     variance_rate : variance of the push per distance, from `diffusivity`
@@ -284,7 +285,7 @@ def predicted_survival(
 ) -> np.ndarray:
     """Return the mean over all pulses of the probability to survive to each distance, by theory.
 
-    pushes : push of each pulse at START, where its random walk begins
+    pushes : push of each pulse (see `push_at`) at START, where its random walk begins
     """
     # The theory needs a positive distance, so distances up to START count as one cell beyond it.
     beyond_start = np.maximum(distances - START, CELL_WIDTH)

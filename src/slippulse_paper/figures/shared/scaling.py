@@ -1,4 +1,4 @@
-"""Draw measured T_trans and L_trans of runs as functions of those by the paper's formulas.
+"""Draw measured T_trans and L_trans of runs as functions of the paper's formulas for them.
 
 In insets, the ratio of measured and predicted values is drawn, with exact theory as lines.
 """
@@ -68,7 +68,7 @@ def with_uncertainties(tables: dict[str, pd.DataFrame], name: str) -> pd.DataFra
 
 
 def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) -> None:
-    """Draw the measured length or time as a function of that by the paper's formula.
+    """Draw the measured length or time of the transition as a function of the paper's formula.
 
     quantity : "length" or "time"
     colours : colours of the markers, one for each run: "c" for faces, and "edgecolors" for rims
