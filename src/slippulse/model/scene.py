@@ -160,14 +160,14 @@ class Scene:
         at_most=1e40,
     )
     gamma: float = number(
-        "elasticity ratio 2G/(lambda + 2G); 0 under a stress boundary", r"\gamma", 0.0
+        "elasticity ratio 2G/(lambda + 2G); 0 if the stress is held on top", r"\gamma", 0.0
     )
     beta: float = number("damping, in units of H times the wave speed", r"\beta", 0.0, at_least=0.0)
     release: str = "total"
     scheme: str = "localised"
     max_step: float = number("largest time step divided by dx", r"\Delta t/\Delta x", 0.2)
     order: int = number(
-        "order of the Taylor step, or the observed order of a number as the spacing falls",
+        "order of the Taylor step, or observed order of convergence of a number",
         "n",
         4,
         integer=True,

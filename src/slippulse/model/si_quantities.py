@@ -23,10 +23,13 @@ UNITS = {
 VARIABLES = {
     "x": ("length", "position"),
     "prestress": ("stress", "initial shear stress"),
-    "release_time": ("time", "time of the first release; NaN if there is none"),
+    "release_time": (
+        "time",
+        "time at which the block is first released; NaN if it is never released",
+    ),
     "stick_time": (
         "time",
-        "time of the last stick; NaN if there is none, or if the block slides at the end",
+        "time at which the block last sticks; NaN if it never sticks or slides at the end",
     ),
     "slip": ("slip", "slip at the end"),
     "slip_velocity": ("slip_velocity", "slip velocity at the end"),
