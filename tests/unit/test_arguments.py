@@ -170,7 +170,7 @@ CALLS = [
     ("allowed: a whole run, without blocks", sp.measure, RUN.sel(x=slice(0.5, None))),
     ("scene: None; allowed: a Scene", sp.simulate, None),
     ("scenes: []; allowed: a list of Scenes, at least one", sp.run_sweep, []),
-    ("allowed: 'continuum' for all scenes, or for none", sp.run_sweep, [TINY, EXACT]),
+    ("allowed: 'continuum' for all scenes, or for no scene", sp.run_sweep, [TINY, EXACT]),
     ("record: 'samples' without samples; allowed: Samples", recorded_sweep, "samples"),
     ("record: ('x',); allowed: a list of fronts, fields, samples", recorded_sweep, "x"),
     ("index: 2; allowed: a whole number and >= 0 and <= 1", sp.point, SWEEP, 2),

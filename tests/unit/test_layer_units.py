@@ -299,7 +299,7 @@ CALLS = {
         2.7e6, DURATION, DX
     ),
     "duration_in_seconds: 0; allowed": lambda: BLOCK.scene((X, STRESS), 0, DX),
-    "gamma: 0.6; allowed: none, since it follows from the layer": lambda: BLOCK.scene(
+    "gamma: 0.6; allowed: none, since the layer or the arguments": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, gamma=0.6
     ),
     "beta: 0.1; allowed: none, since damping_ratio is given": lambda: BLOCK.scene(

@@ -465,7 +465,7 @@ def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
     assert ledger.summary() == f"{counted}."
     remark = CLAIM | {"id": "d", "counted": False}
     ledger_with_remark = Ledger([*(CLAIM | fields for fields in others), remark])
-    more = "1 further claim that is not counted is not reproduced"
+    more = "1 further claim, which is not counted, is not reproduced"
     assert ledger_with_remark.summary() == f"{counted}; {more}."
     changed = [{"key": "c", "shipped": OPEN, "here": NO}]
     assert ledger.differences({"a": YES, "b": YES, "c": OPEN}) == changed

@@ -125,7 +125,7 @@ def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, stu
     assert set(unknown["kept"]) == {""} and unknown["promised"].isna().all()
     assert (
         summarise_promises(unknown, math.nan)
-        == "its spacing is user-defined, so no accuracy is promised"
+        == "the block spacing is user-defined, so no accuracy is promised"
     )
     coarse = tables[2].assign(front_speed_right=math.nan)
     # An unknown uncertainty has not kept its promise.

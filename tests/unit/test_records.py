@@ -105,7 +105,7 @@ HARMED = {
     "unknown to Snakemake": (
         KNOWN,
         Path.unlink,
-        {DATA: "Snakemake's own record of it (in .snakemake) is lost"},
+        {DATA: "Snakemake's own record of this file (in .snakemake) is lost"},
     ),
 }
 for name, text in ODD_RECORDS.items():
@@ -147,7 +147,7 @@ def test_a_file_that_was_copied_elsewhere_with_its_record_is_as_made(results):
     os.utime(DATA)
     Path("results").rename("moved")
     assert {reason for reason in problems(Path("moved")).values()} <= {
-        "Snakemake's own record of it (in .snakemake) is lost"
+        "Snakemake's own record of this file (in .snakemake) is lost"
     }
 
 

@@ -43,7 +43,7 @@ def test_two_nucleations_have_no_length_and_a_reason():
 @pytest.mark.parametrize(
     ("reason", "boundary", "levels", "values"),
     [
-        ("no block stuck before the end", "displacement", (0.5, 0.4), {"gamma": 0.65}),
+        ("no block stuck before the end of the run", "displacement", (0.5, 0.4), {"gamma": 0.65}),
         ("both levels are 0 or negative", "displacement", (-0.2, -0.2), {"gamma": 0.65}),
         ("the left front did not cover 95% of", "stress", (-0.5, 0.0), {}),
         ("under a stress boundary the paper defines it only for", "stress", (0.5, 0.5), {}),

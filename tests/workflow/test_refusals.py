@@ -106,8 +106,10 @@ LAYERS = {
         "points": EVERYWHERE
     },
     "points: -3.1e+06 Pa; allowed: > -3e+06 Pa": {"points": BACKWARDS},
-    "gamma: 0.6; allowed: none, since it follows from the layer": {"gamma": 0.6},
-    "boundary: 'stress'; allowed: the one that layer.top = 'held' implies": {"boundary": "stress"},
+    "gamma: 0.6; allowed: no value, since the layer determines gamma": {"gamma": 0.6},
+    "boundary: 'stress'; allowed: the boundary that layer.top = 'held' implies": {
+        "boundary": "stress"
+    },
     "dx: 0.02; allowed: a number > 0 and <= the thickness, 0.01 m": {"dx": 0.02},
     "peak: 1, and the pre-stress of a block is at most 0.4": {
         "points": [[-0.1, 2.7e6], [0.1, 2.7e6]],

@@ -15,7 +15,7 @@ class UnreadableFile(ValueError):
 
     def __init__(self, path: str | Path, reason: object) -> None:
         text = " ".join(str(reason).split())[:120]
-        super().__init__(f"{path}: cannot be read ({text}); delete it and run again")
+        super().__init__(f"{path}: cannot be read ({text}); delete the file and run again")
 
 
 def configuration_digest() -> str:

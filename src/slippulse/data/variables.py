@@ -36,7 +36,8 @@ VARIABLES |= {
     "stopped_because": "reason why the run ended",
     "steps": "number of time steps",
     "block_updates": "number of sliding blocks, summed over all time steps",
-    "event_updates": "number of blocks that releases and sticks change, summed over all these events",
+    "event_updates": "number of blocks that releases and sticks change, summed over all these "
+    "events",
     "releases": "number of times that a block is released, summed over all blocks",
     "sticks": "number of times that a block sticks, summed over all blocks",
     "re_releases": "number of times that a block is released again after it has slid before",
@@ -59,7 +60,8 @@ VARIABLES |= {
     "horizontal axis",
     "prestress": "non-dimensional pre-stress",
     "release_time": "time at which the block is first released; NaN if it is never released",
-    "stick_time": "time at which the block last sticks; NaN if it never sticks or slides at the end",
+    "stick_time": "time at which the block last sticks; NaN if it never sticks or slides at the "
+    "end",
     "slip": "slip at the end",
     "slip_velocity": "slip velocity at the end",
     "slip_acceleration": "slip acceleration at the end",

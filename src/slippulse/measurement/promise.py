@@ -140,7 +140,7 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
     study : a grid study with the columns that `judge_promises` adds
     """
     if not math.isfinite(promise):
-        return "its spacing is user-defined, so no accuracy is promised"
+        return "the block spacing is user-defined, so no accuracy is promised"
     missed = study[study["kept"] == "false"]
     covered_count = study.loc[study["kept"] != "", "point"].nunique()
     kept_count = covered_count - missed["point"].nunique()
@@ -156,5 +156,5 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
         text += " ..."
     uncovered_count = study["point"].nunique() - covered_count
     if uncovered_count:
-        text += f"; it covers no number of {uncovered_count} runs"
+        text += f"; for {uncovered_count} runs no number has a promised accuracy"
     return text

@@ -169,7 +169,7 @@ class LayerMaterial:
         length, time = f"{self.scales.length:.4g} m", f"{self.scales.time:.4g} s"
         units = f"lengths are in units of {length}, times in units of {time}"
         zero, one = f"{self.kinetic_strength:.6g} Pa", f"{self.static_strength:.6g} Pa"
-        return f"{units}; the stress 0 means {zero}, and 1 means {one}"
+        return f"{units}; a stress of 0 means {zero}, and a stress of 1 means {one}"
 
     def convert_to_si(self, values: Any, quantity: str) -> Any:
         """Convert non-dimensional numbers to SI units.

@@ -142,7 +142,7 @@ class Layer(LayerMaterial):
         >>> scene = block.scene((x, stress), 60e-6, 2e-4, damping_ratio=0.1)
         """
         for name in DERIVED_PARAMETERS:
-            allowed = "none, since it follows from the layer or from the arguments in SI units"
+            allowed = "none, since the layer or the arguments in SI units determine its value"
             check_that(name not in parameters, name, parameters.get(name), allowed)
         check_number("dx_in_metres", dx_in_metres, above=0.0)
         check_number("duration_in_seconds", duration_in_seconds, above=0.0)

@@ -115,7 +115,7 @@ def _measure_in_model_units(run: xr.Dataset, settings: dict[str, Any]) -> dict[s
     settings : settings that differ from MEASURE_SETTINGS
     """
     check_run_attributes(run.attrs)
-    allowed = "a whole run, without blocks cut off or left out along x"
+    allowed = "a run from which no block was removed along x"
     check_that(_has_all_blocks(run), "run", run, allowed)
     no_transition = dict.fromkeys(("transition_time", "transition_length"), math.nan)
     numbers = no_transition | measured_row(run, MEASURE_SETTINGS | settings)
@@ -143,16 +143,17 @@ def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleati
         return ""
     if numbers["boundary"] == "stress":
         if "transition_state" not in numbers:
-            return "under a stress boundary the paper defines it only for left < 0 and right = 0"
+            condition = "left < 0 and right = 0"
+            return f"under a stress boundary the paper defines the transition only for {condition}"
         if math.isnan(time):
             return f"the left front did not cover {MEASURE_SETTINGS['fraction']:.0%} of |x_minus|"
     elif max(numbers["left"], numbers["right"]) <= 0.0:
-        return "both levels are 0 or negative, and no pulse continues to run there"
+        return "both levels of the pre-stress are 0 or negative, so that no pulse keeps running"
     elif math.isnan(time):
-        return "no block stuck before the end"
+        return "no block stuck before the end of the run"
     if has_several_nucleations:
         return "several nucleations: the two outermost fronts do not belong to one rupture"
-    return "the fronts are not known at that time"
+    return "the positions of the fronts at the transition time are not known"
 
 
 def _has_all_blocks(run: xr.Dataset) -> bool:

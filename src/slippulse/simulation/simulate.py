@@ -164,7 +164,7 @@ def run_sweep(
     threads = _usable_cores() if threads is None else threads
     check_number("threads", threads, integer=True, at_least=1, at_most=1024)
     is_valid = isinstance(progress, bool | None) or callable(progress)
-    check_that(is_valid, "progress", progress, "a function of (done, all), True, or None")
+    check_that(is_valid, "progress", progress, "a function of (runs done, all runs), True, or None")
     if isinstance(progress, bool):
         progress = make_bar(len(scenes)) if progress else None
     with announced_compilation():
@@ -179,7 +179,7 @@ def _check_scenes(scenes: Sequence[Scene]) -> None:
     check_that(is_valid, "scenes", scenes, "a list of Scenes, at least one")
     schemes = sorted({scene.scheme for scene in scenes})
     is_compatible = "continuum" not in schemes or len(schemes) == 1
-    check_that(is_compatible, "scheme", schemes, "'continuum' for all scenes, or for none")
+    check_that(is_compatible, "scheme", schemes, "'continuum' for all scenes, or for no scene")
 
 
 def _usable_cores() -> int:

@@ -83,7 +83,7 @@ class LayerScene:
         check_number("cells", self.cells, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
         largest = MAX_DAMPING_RATIO / self.cells
-        allowed = f"a number <= {largest:.4g}, above which {self.cells} cells are unstable"
+        allowed = f"a number <= {largest:.4g}, above which a grid of {self.cells} cells is unstable"
         check_that(self.beta * self.cells <= MAX_DAMPING_RATIO, "beta", self.beta, allowed)
         allowed = "inf, unless the scene is symmetric"
         check_that(self.symmetric or math.isinf(self.trail), "trail", self.trail, allowed)

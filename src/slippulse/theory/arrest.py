@@ -76,7 +76,7 @@ class ArrestingCrack(ExplainsRemovedNames):
         # The curve of the fast fronts ends at self.end.
         last_entry = self.end - 1e-9
         if integral_from_position_to(last_entry) <= 0.0:
-            limit = f"x_minus = {self.balance_position:.10g}, the limit of the left front"
+            limit = f"x_minus = {self.balance_position:.10g}, which the left front approaches"
             raise ValueError(f"position: {position!r}; allowed: a position farther from {limit}")
         return root_between(integral_from_position_to, self.slow_start, last_entry, xtol=1e-13)
 

@@ -78,7 +78,7 @@ def barrier_depth(
     if reason != "stops":
         raise ValueError(
             f"tau_barrier: {tau_barrier!r}, at which the motion of the front is {reason} for"
-            f" {arguments}; allowed: levels at which it is resolved"
+            f" {arguments}; allowed: levels at which the motion is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)
 

@@ -13,10 +13,11 @@ from .front_speeds import front_speed, front_speed_undamped
 from .pulse import steady_pulse
 
 PEAK_VELOCITY_NOTE = (
-    "The paper prints the strength drop divided by sqrt(2 G rho). With its own unit of slip under"
-    " held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G), the value is twice as large. The"
-    " printed value follows with the unit of slip under held stress. It is the peak velocity of the"
-    " slip averaged over the height."
+    "The paper prints the strength drop divided by sqrt(2 G rho). With the paper's own unit of "
+    "slip under held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G), the value is twice as "
+    "large. The"
+    " printed value follows with the unit of slip under held stress. The printed value is the peak "
+    "velocity of the slip averaged over the height."
 )
 STRESS_DROP_NOTE = (
     "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop. By its equation"

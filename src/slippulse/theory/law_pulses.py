@@ -333,7 +333,10 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
         """
         # The evaluations are counted, because a stiff law would take for ever.
         if next(evaluation_numbers) == MAX_EVALUATIONS:
-            reason = f"the pulse takes more than {MAX_EVALUATIONS} evaluations of the friction law"
+            reason = (
+                f"computing the pulse takes more than {MAX_EVALUATIONS} evaluations of the "
+                f"friction law"
+            )
             allowed = "larger values, or weaker friction"
             raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
         slip, strain = state

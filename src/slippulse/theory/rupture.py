@@ -212,7 +212,7 @@ class Rupture(ExplainsRemovedNames):
                     end.reason not in ("stops", "duration") and end.time < time for end in ends
                 )
                 return np.nan if is_left_lost else left, np.nan if is_right_lost else right
-        raise ValueError(f"x: {x!r}; allowed: positions released before {time:g}")
+        raise ValueError(f"x: {x!r}; allowed: positions that are released before t = {time:g}")
 
     def stick_time(self, x) -> np.ndarray:
         """Return the time at which x first sticks.

@@ -28,7 +28,7 @@ from .slow_front import Progress, SlowFront
 
 # Messages for the reasons why a slow front cannot be followed further.
 REASONS_UNKNOWN = {
-    "unknown": "a slow front depends on another part of the rupture",
+    "unknown": "the motion of a slow front depends on another part of the rupture",
     "unresolved": "the motion of a slow front is not resolved",
     "positive_prestress": "a front stops where the pre-stress is positive",
 }

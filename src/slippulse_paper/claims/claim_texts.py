@@ -12,11 +12,11 @@ from ..configuration.problems import spelling_hint
 REASONS = {
     "tested": "tested by a claim",
     "repeats": "repeats another sentence",
-    "background": "background, or only says that something is shown",
+    "background": "gives background, or only says that something is shown",
     "definition": "definition or assumption",
     "other work": "is about other work",
-    "no model": "no model of this project can decide it",
-    "not asked": "a model could decide it; not examined here",
+    "no model": "can be decided by no model of this project",
+    "not asked": "could be decided by a model, but is not examined here",
 }
 
 

@@ -71,9 +71,9 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     regimes = runs["regime"][~slides_back]
     counts = regimes.value_counts()
     further = {f"ruptures: {regime}": float(count) for regime, count in counts.items()}
-    further["left out, since blocks would slide back"] = float(slides_back.sum())
+    further["runs left out, because blocks would slide backwards"] = float(slides_back.sum())
     stopped = len(other_laws) - len(ruptures)
-    further["left out, since fracture energy stops them"] = float(stopped)
+    further["runs left out, because fracture energy stops the rupture"] = float(stopped)
     # The caveat is that only some friction laws were tested.
     return Qualitative(decided=regimes != "crack", condition=True, further=further)
 
@@ -96,7 +96,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     steady_count_by_spacing = (~with_strengthening).sum()
     steady_count = float(steady_count_by_spacing.max())
-    words = "number of rate strengthenings under which a pulse stays steady"
+    words = "number of values of rate strengthening for which a pulse stays steady"
     # The caveat is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),

@@ -158,10 +158,14 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(crossings.median()), uncertainty),
         further={
-            "sliding time in crossing times, top free to rise: smallest": float(crossings.min()),
-            "sliding time in crossing times, top free to rise: largest": float(crossings.max()),
-            "sliding time in crossing times, top held: smallest": float(held_crossings.min()),
-            "sliding time in crossing times, top held: largest": float(held_crossings.max()),
+            "sliding time divided by the time for a shear front to cross the layer, top free to "
+            "rise: smallest": float(crossings.min()),
+            "sliding time divided by the time for a shear front to cross the layer, top free to "
+            "rise: largest": float(crossings.max()),
+            "sliding time divided by the time for a shear front to cross the layer, top held: "
+            "smallest": float(held_crossings.min()),
+            "sliding time divided by the time for a shear front to cross the layer, top held: "
+            "largest": float(held_crossings.max()),
             "sliding time with free top divided by that with held top: smallest": float(
                 longer.min()
             ),
@@ -193,7 +197,7 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     first_stick_change = change_by_refinement(rows, "barrier", "first_stick")
     further = {
         "cracks that do not stick, in uniform pre-stress": float(is_crack.counts()["held"]),
-        "stopped on one side by a barrier": float(is_stopped.counts()["held"]),
+        "ruptures that a barrier stops on one side": float(is_stopped.counts()["held"]),
     }
     return Qualitative(
         decided=[*is_crack.decided, *is_stopped.decided],
@@ -405,7 +409,9 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     for outcome, count in points["outcome"].value_counts().items():
         further[f"points that are {outcome}"] = float(count)
     tough_and_dying = (tough["outcome"] == "dying").sum()
-    further["dying with more fracture energy than can be released"] = float(tough_and_dying)
+    further["dying points with more fracture energy than the layer can release"] = float(
+        tough_and_dying
+    )
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
     has_settled = max(differences) < evidence.tolerance(id)

@@ -82,7 +82,8 @@ class Entry(SimpleNamespace):
         if self.at_earlier:
             earlier = setting(self.earlier_tolerance)
             parts.append(
-                f"at {earlier}, the tolerance set before results were seen: {self.at_earlier}"
+                f"with the tolerance {earlier}, which was set before results were seen: "
+                f"{self.at_earlier}"
             )
         return parts
 
@@ -131,7 +132,9 @@ class Entry(SimpleNamespace):
             parts.append(f"{self.runs} runs")
         if self.largest is not None:
             ninety, largest = percent(self.ninety), percent(self.largest)
-            parts.append(f"90 % of them deviate by at most {ninety}, and the worst by {largest}")
+            parts.append(
+                f"90 % of the runs deviate by at most {ninety}, and the worst run by {largest}"
+            )
         if self.left_out:
             parts.append(f"runs left out because they have no number: {self.left_out}")
         return parts
@@ -165,8 +168,8 @@ class QualitativeEntry(Entry):
         # The text is, for example, "38 of 40, 1 against, 1 undecided".
         held, _, others = self.measured_text().partition(", ")
         if others:
-            return f"It holds in {held} cases ({others})."
-        return "It holds only under a condition that the paper does not state."
+            return f"The claim holds in {held} cases ({others})."
+        return "The claim holds only under a condition that the paper does not state."
 
 
 class ReadingEntry(Entry):
@@ -281,7 +284,9 @@ class Ledger:
         failed = sum(not claim.counted and claim.verdict == FAILED for claim in self)
         if failed:
             words = (
-                "claim that is not counted is" if failed == 1 else "claims that are not counted are"
+                "claim, which is not counted, is"
+                if failed == 1
+                else "claims, which are not counted, are"
             )
             text += f"; {failed} further {words} not reproduced"
         return f"{text}."

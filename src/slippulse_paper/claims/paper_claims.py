@@ -147,7 +147,7 @@ def all_claims(
     in_only_one = without_rule.symmetric_difference(JUDGES_BY_CLAIM)
     if in_only_one:
         names = ", ".join(sorted(in_only_one))
-        raise ValueError(f"claims: {names}; allowed: the same in the texts and in the code")
+        raise ValueError(f"claims: {names}; allowed: the same claims in the texts and in the code")
     # In this simulation pulses enter another pre-stress. Two new columns, which the rules of claims
     # use, show whether each pulse grows or decays.
     evidence.assign("regimes_beyond", pulses.growth_signs)

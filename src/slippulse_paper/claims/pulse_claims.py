@@ -237,7 +237,7 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
         ),
         further={
             "largest deviation of the slip": float(largest["pulse_slip"]),
-            "largest deviation of the slip from the exact one": float(largest["exact_pulse_slip"]),
+            "largest deviation of the slip from the exact slip": float(largest["exact_pulse_slip"]),
             "largest deviation of the slip from the formula without damping": float(
                 largest["paper_pulse_slip"]
             ),

@@ -86,9 +86,11 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
     smoothest = rows.loc[rows["deviation"].idxmin()]
     further = {
         "smallest standard deviation": smoothest["deviation"],
-        "spread of the velocities at this deviation": float(velocity_spread[smoothest.name]),
-        "cracks at this deviation": smoothest["cracks"],
-        "deaths at this deviation": smoothest["deaths"],
+        "spread of the velocities at the smallest standard deviation": float(
+            velocity_spread[smoothest.name]
+        ),
+        "cracks at the smallest standard deviation": smoothest["cracks"],
+        "deaths of pulses at the smallest standard deviation": smoothest["deaths"],
     }
     return Qualitative(decided=[*changed], further=further)
 

@@ -288,7 +288,7 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
     estimate = float(scene[f"paper_transition_{quantity}"])
     return {
         "arrow of figure 4 divided by the estimate": reading["value"] / estimate,
-        "reading error of this ratio": reading["reading_error"] / estimate,
+        "reading error of the arrow divided by the estimate": reading["reading_error"] / estimate,
     }
 
 
@@ -308,7 +308,9 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     further = {
         f"runs that reach the {PRINTED_SLIP}": float(ratio.count()),
         "all runs": float(len(ratio)),
-        "runs that reach it within the tolerance": float(is_within_tolerance.sum()),
+        f"runs that reach the {PRINTED_SLIP} within the tolerance": float(
+            is_within_tolerance.sum()
+        ),
     }
     # Values for the sentences of the claim.
     template_values = readings_by_name(evidence) | deviations_at_first_stick(combinations)
@@ -431,7 +433,11 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
         if choice["solution"] == "exact":
             ratio = tables[0]["time"] / tables[0]["covered"]
             smallest_ratios.append(float(ratio.min()))
-    further = {"smallest exact time divided by the time at speed 1": min(smallest_ratios)}
+    further = {
+        "smallest exact transition time divided by the time of a front at the wave speed": min(
+            smallest_ratios
+        )
+    }
     return over_choices(judge_each(runs, judge), further=further)
 
 

@@ -59,6 +59,9 @@ def drawing_problems(config: Configuration, draws: Mapping[str, Mapping[str, str
             is_drawable = CONDITIONS[condition]
             if not any(is_drawable(run) for run in runs(sweep)):
                 problem = f"simulations.{name}: no run that {figure} can draw"
-                allowed = f"at least one run with {condition}; other runs need another name"
+                allowed = (
+                    f"at least one run with {condition}; put other runs into a simulation with "
+                    f"another name"
+                )
                 problems.append(f"{problem}; allowed: {allowed}")
     return problems

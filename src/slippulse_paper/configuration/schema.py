@@ -131,7 +131,7 @@ TITLE = "one line of at most 120 printable characters, not blank"
 STEPS, BUMPS = "a list of [position, level]", "a list of [centre, amplitude, width > 0]"
 POINTS = "a list of [x, tau] from left to right, at least two"
 ROUGH = "a mapping with level, deviation, correlation_length, hurst, start, stop, spacing and seed"
-SEEDS = "a whole number >= 0, a list of different ones, or {from: A, to: B} with A < B"
+SEEDS = "a whole number >= 0, a list of different whole numbers, or {from: A, to: B} with A < B"
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
 FACTORS = "two factors >= 1.2, one at least 1.1 times the other"
@@ -139,10 +139,10 @@ UNITS = "one of time, half_periods, balance_distances"
 RULE = "fixed, or scale, width_power and gamma_power"
 GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
 ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
-LAWS = "friction law of sliding blocks, explained below; default: its value in `model`"
+LAWS = "friction law of sliding blocks, explained below; default: the value in `model`"
 IN_SI = (
-    "properties of a layer in SI units; lengths, stresses and times of the scene"
-    " are then in SI units too"
+    "properties of a layer in SI units. Lengths, stresses and times of the scene are then also in "
+    "SI units"
 )
 # Quantities of the numbers of a scene that are in SI units if the scene has a layer.
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
@@ -176,16 +176,21 @@ class Rough(Block):
 
     level: float | Distinct[float] = key("mean of the pre-stress, below 1 [S]")
     deviation: NonNegative | Distinct[NonNegative] = key(
-        "standard deviation; values of the pre-stress above 0.95 are set to 0.95 [S]"
+        "standard deviation of the pre-stress. Values of the pre-stress above 0.95 are set to 0.95 "
+        "[S]"
     )
     correlation_length: Positive | Distinct[Positive] = key(
-        "length beyond which the pre-stress is not correlated [H]"
+        "distance beyond which values of the pre-stress are not correlated [H]"
     )
     hurst: Hurst | Distinct[Hurst] = key(
         "Hurst exponent: 0 gives the roughest profile at short lengths, 1 the smoothest"
     )
-    start: float = key("first position; the pre-stress is constant before it [H]")
-    stop: float = key("last position; the pre-stress is constant beyond it [H]")
+    start: float = key(
+        "first position of the random values; to its left the pre-stress is constant [H]"
+    )
+    stop: float = key(
+        "last position of the random values; to its right the pre-stress is constant [H]"
+    )
     spacing: Positive = key(
         "distance between the positions at which the random values are drawn [H]"
     )
@@ -219,27 +224,29 @@ class Profile(Block):
         None,
     )
     width: Positive | None = key(
-        "standard deviation W of the Gaussian at x = 0, at least dx; with `points` or `file` there"
-        " is a Gaussian only if `width` is given [H] (paper)",
+        "standard deviation W of the Gaussian at x = 0, at least dx. With `points` or `file` there "
+        "is a Gaussian only if `width` is given [H] (paper)",
         1.0,
     )
-    peak: float = key("pre-stress at x = 0; somewhere the pre-stress must reach 1 [S] (paper)", 1.0)
+    peak: float = key(
+        "pre-stress at x = 0. At some position the pre-stress must reach 1 [S] (paper)", 1.0
+    )
     steps: list[Step] = key(
-        "changes of the pre-stress: from each position on, away from x = 0, it has a"
-        " new level [H, S]",
+        "steps of the pre-stress, which has the new level from each position on, away from x = 0 "
+        "[H, S]",
         [],
         STEPS,
     )
     bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of levels: points of the pre-stress, which is linear between them and"
-        " constant outside; a position that appears twice is a jump [H, S]",
+        "instead of levels: points of the pre-stress. The pre-stress is linear between the points, "
+        "constant outside, and jumps at a position that appears twice [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: path of a CSV or netCDF file with such points, relative to the folder"
-        " of the overlay",
+        "instead of levels: CSV or netCDF file with points of the pre-stress; its path is relative "
+        "to the folder of the overlay",
         None,
     )
     rough: Rough | None = key(
@@ -300,7 +307,8 @@ class Profile(Block):
 
 class Beyond(Block):
     position: float = key(
-        "position where the second level begins, not 0; it extends away from x = 0 [H]"
+        "position where the second level begins, other than x = 0. From there the second level "
+        "extends away from x = 0 [H]"
     )
     levels: Distinct[float] = key(
         "values of the second level, combined with all values of the other lists [S]"
@@ -323,8 +331,8 @@ class SpacingRule(Block):
     """A fixed block spacing, or the preset's dx times scale W^width_power gamma^gamma_power."""
 
     fixed: Spacing | None = key(
-        "one spacing for all presets and for the grid study; no other key of `spacing`"
-        " may be given with it [H]",
+        "one spacing for all presets and for the grid study; it excludes the other keys of "
+        "`spacing` [H]",
         None,
     )
     scale: Positive = key("factor by which the dx of the preset is multiplied", 1.0)
@@ -341,7 +349,7 @@ class Recording(Block):
     positions: int = key(
         "number of positions, evenly spaced; 1 means x = 0 alone", ge=1, le=100_000
     )
-    extent: NonNegative = key("largest distance of these positions from x = 0 [H]")
+    extent: NonNegative = key("largest distance of the sampled positions from x = 0 [H]")
 
 
 class Physics(Block):
@@ -350,16 +358,15 @@ class Physics(Block):
     boundary: Boundary = key(
         "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
     )
-    scheme: Scheme | None = key("numerical scheme; default: its value in `model`", None)
+    scheme: Scheme | None = key("numerical scheme; default: the value in `model`", None)
     resolved_blocks: int | None = key(
-        "smallest pulse width; a run with a narrower pulse is flagged; default: its"
-        " value in `model` [dx]",
+        "smallest pulse width, below which a run is flagged; default: the value in `model` [dx]",
         None,
         ge=1,
     )
     max_step: Positive | None = key(
-        "largest time step; default: the step of the preset, or the largest stable step"
-        " if this is smaller [dx]",
+        "largest time step; default: the smaller of the preset's step and the largest stable step "
+        "[dx]",
         None,
     )
 
@@ -368,7 +375,7 @@ class Physics(Block):
         given_others = [other for other in others if other in self.model_fields_set]
         are_together = key in self.model_fields_set and bool(given_others)
         problem = f"{key}: given with {', '.join(given_others)}"
-        require(not are_together, problem, "one or the other (null removes a key)")
+        require(not are_together, problem, "only one of these keys (null removes a key)")
 
     @model_validator(mode="after")
     def _check_physics(self) -> Self:
@@ -386,7 +393,7 @@ class Physics(Block):
         if self.boundary == "displacement":
             require(gamma is not None, "gamma: missing", "> 0 under boundary 'displacement'")
         else:
-            allowed = "left out under boundary 'stress', which has no leaf springs"
+            allowed = "no value under boundary 'stress', which has no leaf springs"
             require(gamma is None, f"gamma: {gamma!r}", f"{allowed} (gamma: null removes it)")
 
 
@@ -430,13 +437,12 @@ class Simulation(PhysicsOfSweep):
         "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
     beyond: Beyond | None = key(
-        "second level of the pre-stress, which replaces the first one on one side"
-        " beyond a position",
+        "second level of the pre-stress, beyond a position on one side",
         None,
     )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
     damping_ratio: Distinct[NonNegative] | None = key(
-        "damping ratio beta/dx; default: its value in `model`", None
+        "damping ratio beta/dx; default: the value in `model`", None
     )
     beta: Distinct[NonNegative] | None = key("instead of `damping_ratio`: damping beta [H]", None)
     friction: Distinct[Friction] | None = key(LAWS, None, f"a list; each entry {LAW}")
@@ -445,10 +451,10 @@ class Simulation(PhysicsOfSweep):
     spacing: SpacingRule = key("rule for the block spacing", SpacingRule(), RULE)
     dx: Distinct[Spacing] | None = key("instead of `spacing`: block spacings [H]", None)
     release: Release | Distinct[Release] | None = key(
-        "release rule; default: its value in `model`", None, RELEASED
+        "release rule; default: the value in `model`", None, RELEASED
     )
     friction_ratio: NonNegative | None = key(
-        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; default: its value in `model`", None
+        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; default: the value in `model`", None
     )
     record: Distinct[Literal["fronts", "fields", "samples"]] = key(KEPT, words=RECORDED)
     samples: Recording | None = key(
@@ -508,7 +514,7 @@ class LayerKeys(Block):
     normal_stress: Positive = key("normal stress on the interface [Pa]")
     top: Top | None = key(
         "what is held on top: `held` means the displacement, `stress` means the stress;"
-        " default: as `boundary` says",
+        " default: the same as `boundary`",
         None,
     )
 
@@ -531,7 +537,7 @@ class NamedScene(Profile, PhysicsOfScene):
     title: str = key("title of figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
     gamma: Positive | None = key(GAMMA, None)
     damping_ratio: NonNegative | None = key(
-        "damping ratio beta/dx; default: its value in `model`", None
+        "damping ratio beta/dx; default: the value in `model`", None
     )
     beta: NonNegative | None = key("instead of `damping_ratio`: damping beta [H]", None)
     friction: Friction | None = key(LAWS, None, LAW)
@@ -539,7 +545,7 @@ class NamedScene(Profile, PhysicsOfScene):
     dx: Positive | None = key(
         "block spacing, at most 1; default: the spacing of the preset [H]", None
     )
-    release: Release | None = key("release rule; default: its value in `model`", None)
+    release: Release | None = key("release rule; default: the value in `model`", None)
     duration: Positive = key("duration of the run [H/c]")
     layer: LayerKeys | None = key(IN_SI, None)
 
@@ -581,9 +587,11 @@ class NamedScene(Profile, PhysicsOfScene):
         require(
             agree,
             f"boundary: {self.boundary!r}",
-            f"the one that layer.top = {top!r} implies, or none",
+            f"the boundary that layer.top = {top!r} implies, or none",
         )
-        require(self.gamma is None, f"gamma: {self.gamma}", "none, since it follows from the layer")
+        require(
+            self.gamma is None, f"gamma: {self.gamma}", "no value, since the layer determines gamma"
+        )
         scene = self.in_model_units()
         try:
             scene.check_table()
@@ -666,7 +674,8 @@ class Preset(Block):
         words=FACTORS,
     )
     whole: bool = key(
-        "true if studies, claims and report are made by default, false if only figures are", True
+        "true if studies, claims and report are made by default, false if only figures are made",
+        True,
     )
 
     @model_validator(mode="after")
@@ -685,9 +694,9 @@ class Model(Block):
         "damping ratio beta/dx; the paper has beta = 1e-3, and its figure 4 agrees with dx = 0.01"
     )
     release: Release = key(
-        "stress that must reach 1 to release a block: `total` includes the damping"
-        " force, as in the authors' code; `elastic` does not include it, as in the"
-        " printed paper"
+        "stress that must reach 1 to release a block. The stress `total` includes the damping "
+        "force, as in the authors' code. The stress `elastic` does not include the damping force, "
+        "as in the printed paper"
     )
     scheme: Scheme = key(
         "`localised` computes the exact time of every release and stick; `fixed_step`"
@@ -698,12 +707,12 @@ class Model(Block):
         "friction law; by default `coulomb`, the law of the paper", None, LAW
     )
     friction_ratio: NonNegative = key(
-        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients; at the stress -(1 + 2"
-        " r) a block would slide backwards, and its run is flagged"
+        "ratio r = mu_k/(mu_s - mu_k) of friction coefficients. A run is flagged if a block would "
+        "slide backwards, which happens at the stress -(1 + 2 r)"
     )
     resolved_blocks: int = key(
-        "smallest width of a pulse (under a stress boundary, of the Gaussian); a run"
-        " with a smaller width is flagged [dx]",
+        "smallest width of a pulse, below which a run is flagged. If the stress is held, the width "
+        "of the Gaussian counts, too [dx]",
         ge=1,
     )
 
@@ -714,7 +723,7 @@ class Measure(Block):
         " this fraction of the balance distance |x_minus|"
     )
     front_window: float = key(
-        "the front speed is measured over this last fraction of the path of the front",
+        "fraction of the front's path, at its end, over which the front speed is measured",
         ge=0.05,
         lt=1.0,
     )
@@ -733,7 +742,7 @@ class Measure(Block):
 
 class Sketch(Block):
     strip_width: float = key(
-        "width of the strip in the sketch over which the momentum balance is integrated [H]",
+        "width of the strip over which the momentum balance in the sketch is integrated [H]",
         ge=0.01,
         le=2.0,
     )
@@ -767,7 +776,7 @@ class LayerMap(Block):
         "fracture energies of slip weakening [tau_0^2/(2 gamma)]"
     )
     cells: int = key(
-        "number of grid cells over the height of the layer; a second grid has half as many",
+        "number of grid cells over the height of the layer; a second grid has half as many cells",
         ge=10,
         le=200,
     )
@@ -783,7 +792,11 @@ class LayerMap(Block):
     def _check_chunks(self) -> Self:
         """Raise ValueError if there are more chunks than points of the map."""
         points = len(self.gamma) * len(self.fracture_energy)
-        require(self.chunks <= points, f"chunks: {self.chunks}", f"at most {points}, one per point")
+        require(
+            self.chunks <= points,
+            f"chunks: {self.chunks}",
+            f"at most {points}, one per point of the map",
+        )
         return self
 
 
@@ -807,10 +820,11 @@ class Reading(Block):
     value: float = key("the number that was read off (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
     shared_error: NonNegative = key(
-        "part of `reading_error` that is the same for all readings with a `shared_error`", 0.0
+        "part of `reading_error` that all readings with a `shared_error` have in common", 0.0
     )
     arrow: bool = key(
-        "true if the number comes from a drawn arrow; fits are then made both with and without it",
+        "true if the number comes from a drawn arrow; fits are then made with and without this "
+        "number",
         False,
     )
 
@@ -823,13 +837,13 @@ class Configuration(Block):
         "compromises between speed and accuracy, by name", min_length=1
     )
     accuracy: Annotated[float, Field(ge=1e-4, le=0.1)] | None = key(
-        "largest relative numerical error that measured numbers may have; the program chooses"
-        " the spacing and the time step for this error, and ignores the values in the preset",
+        "largest relative numerical error that measured numbers may have. The program chooses the "
+        "spacing and the time step for this error, instead of the values in the preset",
         None,
     )
     # Make and the command line may say yes, on or 1.
     allow_large: Switch = key("true if simulations above the limits of cost are allowed", False)
-    model: Model = key("values for all simulations and scenes that do not set their own")
+    model: Model = key("default values for all simulations and scenes")
     simulations: dict[Name, Simulation] = key(
         "sweeps by name, with one run for each combination of values"
     )
@@ -862,11 +876,11 @@ class Configuration(Block):
 
     def _check_scene_name(self, name: str) -> None:
         """Raise ValueError if a scene has the name of a simulation or of another file."""
-        problem = f"scenes.{name}: also the name of a simulation"
+        problem = f"scenes.{name}: a simulation has the same name"
         require(name not in self.simulations, problem, "another name")
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
-        problem = f"scenes.{name}: its file has the name of another file"
+        problem = f"scenes.{name}: another file has the same name as its file"
         require(
             not is_taken,
             problem,
@@ -888,6 +902,6 @@ class Configuration(Block):
         check_name(f"{key}.quantity", quantity, record_for, measured)
         needed, recorded = record_for[quantity], self.simulations[simulation].record
         allowed = (
-            f"what simulations.{simulation} records; this one needs record: [fronts, {needed}]"
+            f"a number that simulations.{simulation} records, or record: [fronts, {needed}] there"
         )
         require(needed in recorded, f"{key}.quantity: {short_repr(quantity)}", allowed)

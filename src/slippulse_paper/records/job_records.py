@@ -239,7 +239,7 @@ def _changed_files(states: Mapping[str, FileState]) -> Iterator[tuple[str, str]]
         if not is_unchanged_file:
             yield name, "changed since its job wrote it"
         elif name not in snakemake_files and Path(name).is_file():
-            yield name, "Snakemake's own record of it (in .snakemake) is lost"
+            yield name, "Snakemake's own record of this file (in .snakemake) is lost"
 
 
 def _recorded_folder(record: Path) -> Path:
@@ -301,7 +301,9 @@ def check_inputs(paths: Iterable[str]) -> tuple[dict[str, FileState], dict[str, 
             continue
         records[path] = record
         if record.outputs[Path(path).name].sha256 != states[path].sha256:
-            remedy = "delete it and run again, or run `make replicate`, which makes it again"
+            remedy = (
+                "delete the file and run again, or run `make replicate`, which makes the file again"
+            )
             raise ChangedFile(f"{path}: changed since its job wrote it; {remedy}")
     return states, records
 

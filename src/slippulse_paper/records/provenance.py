@@ -162,7 +162,7 @@ COMPARISON_ADVICE = {
     "figures": "compare the CSV, whose numbers the picture draws; look at PNG and PDF",
     "measurements": "numbers must agree within the uncertainties listed in uncertainties/",
     "studies": "numbers must agree to a relative difference of 1e-6",
-    "manuscript": "read it; its numbers follow from the tables",
+    "manuscript": "read the report; its numbers follow from the tables",
 }
 # Comments on files, by their folder or name.
 COMMENTS = {

@@ -101,8 +101,8 @@ class Comparison:
     def summary(self) -> str:
         """Return a sentence on how many numbers agree."""
         agreement = f"{self.agree} of {self.compared} numbers agree"
-        unknown = f"{self.unknown} differ and have no uncertainty"
-        return f"{agreement} within the sum of both uncertainties; {unknown}"
+        unknown = f"{self.unknown} numbers differ and have no uncertainty"
+        return f"{agreement} within the sum of the two uncertainties; {unknown}"
 
 
 def compare(new: Path, old: Path) -> Comparison:

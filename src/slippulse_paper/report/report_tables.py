@@ -34,8 +34,8 @@ STUDIED_QUANTITIES = (
 # Parts of the study of the two-dimensional layer, by their name in the table of its runs.
 LAYER_PARTS = {
     "pulse": "displacement held",
-    "far": "displacement held, followed farther",
-    "damped": "displacement held, with damping, followed farther",
+    "far": "displacement held, longer distance",
+    "damped": "displacement held, with damping, longer distance",
     "coupled": "displacement held, strength follows pressure",
     "free": "top free to rise",
     "held": "top held, for comparison",

@@ -52,7 +52,7 @@ class WorkerPool:
             raise JobFailed("its process was killed") from None
         except (EOFError, OSError) as error:
             self._executor = None
-            raise JobFailed(f"its process could not be started: {error}") from None
+            raise JobFailed(f"the process of the job could not be started: {error}") from None
         except SystemExit:
             raise JobFailed("stopped") from None
 
