@@ -424,7 +424,7 @@ WHY = {
         {"kind": "scaling"},
         "The deviation is 0.25, tolerance 0.2; the uncertainty is 0.0100.",
     ),
-    "always": (AGAINST, "It holds in 5 of 8 cases (1 against, 2 undecided)."),
+    "always": (AGAINST, "The claim holds in 5 of 8 cases (1 against, 2 undecided)."),
     "reading": (UNLIKELY, "The best fit has p = 2.0×10⁻⁴, required at least 0.05."),
     "not testable": ({"verdict": NONE}, "This run has no number that could be judged."),
     "its own reason": ({"why": "It needs a reason."}, "It needs a reason."),
