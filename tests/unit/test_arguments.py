@@ -165,7 +165,11 @@ CALLS = [
     (TOO_LATE, sp.run_sweep, [TINY], [LATE]),
     ("allowed: a sweep that was recorded with 'fronts'", sp.measure, FIELDS_ALONE),
     ("allowed: a Dataset that simulate returned", sp.measure, TINY),
-    ("allowed: a run from which no block was removed", sp.measure, RUN.isel(x=slice(None, None, 2))),
+    (
+        "allowed: a run from which no block was removed",
+        sp.measure,
+        RUN.isel(x=slice(None, None, 2)),
+    ),
     ("allowed: a run from which no block was removed", sp.measure, RUN.sel(x=slice(0.0, None))),
     ("allowed: a run from which no block was removed", sp.measure, RUN.sel(x=slice(0.5, None))),
     ("scene: None; allowed: a Scene", sp.simulate, None),

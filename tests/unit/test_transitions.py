@@ -44,9 +44,19 @@ def test_two_nucleations_have_no_length_and_a_reason():
     ("reason", "boundary", "levels", "values"),
     [
         ("no block stuck before the end of the run", "displacement", (0.5, 0.4), {"gamma": 0.65}),
-        ("both levels of the pre-stress are 0 or negative", "displacement", (-0.2, -0.2), {"gamma": 0.65}),
+        (
+            "both levels of the pre-stress are 0 or negative",
+            "displacement",
+            (-0.2, -0.2),
+            {"gamma": 0.65},
+        ),
         ("the left front did not cover 95% of", "stress", (-0.5, 0.0), {}),
-        ("under a stress boundary the paper defines the transition only for", "stress", (0.5, 0.5), {}),
+        (
+            "under a stress boundary the paper defines the transition only for",
+            "stress",
+            (0.5, 0.5),
+            {},
+        ),
     ],
 )
 def test_a_missing_transition_has_a_reason(reason, boundary, levels, values):

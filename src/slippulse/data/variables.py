@@ -13,8 +13,8 @@ VARIABLES |= {
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
     "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
-    "profile": "number of the pre-stress profile in the list `profiles`, counted from 1. It is "
-    "recorded only if one of the profiles is a table",
+    "profile": "number of the pre-stress profile in the list `profiles`, counted from 1, if one of "
+    "the profiles is a table",
     "seed": "seed of the random numbers of a rough pre-stress; NaN if the pre-stress is not rough",
     "release": "release rule: whether the stress at release includes the damping force (total) or "
     "not (elastic)",
@@ -29,7 +29,8 @@ VARIABLES |= {
     "leaf_spring_energy": "energy of the leaf springs at the end",
     "viscous_loss": "energy lost to damping and to the increase of friction with slip rate",
     "friction_loss": "work against the part of friction above kinetic friction: the fracture "
-    "energy of slip weakening. With the law linear_rate, this work is in viscous_loss",
+    "energy of slip weakening. With the law linear_rate, viscous_loss contains "
+    "the work against this part of friction",
     "event_loss": "energy that the textbook scheme loses when blocks stick within a time step",
     "energy_residual": "error of the energy balance divided by its largest term",
     "end_time": "time at which the run ended",

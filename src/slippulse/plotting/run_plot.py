@@ -76,7 +76,7 @@ def _check_drawable(run: object) -> None:
     """Raise TypeError if the argument is not one run that has all drawn variables."""
     # Only sweeps have these dimensions.
     if isinstance(run, xr.Dataset) and {"point", "block"} & {*run.dims}:
-        problem, allowed = "a sweep", "one run of it, such as point(sweep, 0)"
+        problem, allowed = "a sweep", "one run of the sweep, such as point(sweep, 0)"
     elif not isinstance(run, xr.Dataset) or "end_time" not in run.attrs:
         problem, allowed = type(run).__name__, "a Dataset that simulate returned"
     else:
@@ -84,7 +84,7 @@ def _check_drawable(run: object) -> None:
         if not missing:
             return
         problem = f"without {', '.join(missing)}"
-        allowed = "a run with these; a sweep records them if record is ('fronts', 'fields')"
+        allowed = "a run with these data; a sweep records them if record is ('fronts', 'fields')"
     raise TypeError(f"run: {problem}; allowed: {allowed}")
 
 

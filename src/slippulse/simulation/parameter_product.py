@@ -92,7 +92,7 @@ def _values(name: str, value: Any) -> list:
         return [value]
     # Elements of an array are converted to Python numbers. An array may be a single number.
     values = np.atleast_1d(value).tolist() if isinstance(value, np.ndarray) else list(value)
-    check_that(len(values) > 0, name, value, "a value, or a list of at least one")
+    check_that(len(values) > 0, name, value, "a value, or a list of at least one value")
     return values
 
 

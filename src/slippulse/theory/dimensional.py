@@ -24,7 +24,7 @@ STRESS_DROP_NOTE = (
     " (C13), stress falls by twice the amount by which the initial stress exceeds kinetic friction."
 )
 TRANSITION_NOTE = (
-    "The paper neglects the elastic coupling. The exact value is that of a rupture that starts at a"
+    "The paper neglects the elastic coupling. The exact value is for a rupture that starts at a"
     " point."
 )
 

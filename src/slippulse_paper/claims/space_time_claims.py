@@ -64,7 +64,7 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
     for words, fit in (("with", with_arrows), ("without", without_arrows)):
         for name, excess in excess_lengths(evidence, fit).items():
             statement = evidence.readings[name]["statement"]
-            further[f"{statement}, drawn minus best fit {words} arrows"] = excess
+            further[f"{statement}, drawn value minus value of the best fit {words} arrows"] = excess
     readings = readings_by_name(evidence)
     # Position of the right front at the time at which the arrow for T_trans ends.
     front_position = readings["intercept"] + readings["front_speed"] * readings["arrow_time"]

@@ -111,7 +111,7 @@ def _hint_at_other_blocks(key: str | int) -> str:
         "measure": Measure,
     }
     places = [f"{name}.{key}" for name, block in blocks.items() if key in block.model_fields]
-    return f" (it is set by {' and '.join(places)})" if places else ""
+    return f" (this key is set by {' and '.join(places)})" if places else ""
 
 
 def _missing_line(path: Path, config: Mapping) -> str:

@@ -25,7 +25,9 @@ def with_new_names(overlay: Mapping[str, Any]) -> dict[str, Any]:
             new_name = new_names.get(key, key)
             if new_name != key and new_name in overlay[block]:
                 problem = f"{block}.{key}: {short_repr(value)}, in addition to {block}.{new_name}"
-                raise ConfigError(f"{problem}; allowed: one of them, {block}.{new_name}")
+                raise ConfigError(
+                    f"{problem}; allowed: only one of the two keys, {block}.{new_name}"
+                )
             renamed[block][new_name] = value
     return renamed
 

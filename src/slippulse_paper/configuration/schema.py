@@ -148,9 +148,9 @@ IN_SI = (
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
 SI_KEYS |= {"dx": "length", "duration": "time"}
 KEPT = (
-    "recorded data: fronts are release and stick times; fields are slip, slip"
-    " velocity and slip acceleration at the end; samples are slip and slip velocity"
-    " at the times and positions given under `samples`"
+    "recorded data: fronts (release and stick times), fields (slip, slip velocity and slip "
+    "acceleration at the end) and samples (slip and slip velocity at the times and positions under "
+    "`samples`)"
 )
 RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
@@ -232,8 +232,8 @@ class Profile(Block):
         "pre-stress at x = 0. At some position the pre-stress must reach 1 [S] (paper)", 1.0
     )
     steps: list[Step] = key(
-        "steps of the pre-stress, which has the new level from each position on, away from x = 0 "
-        "[H, S]",
+        "steps of the pre-stress: beyond each position, away from x = 0, the pre-stress has the "
+        "new level [H, S]",
         [],
         STEPS,
     )
@@ -307,8 +307,7 @@ class Profile(Block):
 
 class Beyond(Block):
     position: float = key(
-        "position where the second level begins, other than x = 0. From there the second level "
-        "extends away from x = 0 [H]"
+        "position, other than x = 0, from which the second level extends away from x = 0 [H]"
     )
     levels: Distinct[float] = key(
         "values of the second level, combined with all values of the other lists [S]"
@@ -430,9 +429,7 @@ class Simulation(PhysicsOfSweep):
     right: Literal["same"] | Distinct[float] | None = key(
         "pre-stress levels on the right [S]", None
     )
-    width: Distinct[Positive] = key(
-        "widths W of the Gaussian at nucleation, at least dx [H]", [1.0]
-    )
+    width: Distinct[Positive] = key("widths W of the Gaussian at x = 0, at least dx [H]", [1.0])
     profiles: Distinct[Profile] | None = key(
         "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
@@ -691,7 +688,8 @@ class Preset(Block):
 
 class Model(Block):
     damping_ratio: NonNegative = key(
-        "damping ratio beta/dx; the paper has beta = 1e-3, and its figure 4 agrees with dx = 0.01"
+        "damping ratio beta/dx. The paper states beta = 1e-3, and the paper's figure 4 agrees with "
+        "dx = 0.01"
     )
     release: Release = key(
         "stress that must reach 1 to release a block. The stress `total` includes the damping "
@@ -699,9 +697,9 @@ class Model(Block):
         "as in the printed paper"
     )
     scheme: Scheme = key(
-        "`localised` computes the exact time of every release and stick; `fixed_step`"
-        " is the textbook scheme; `continuum` is the exact solution without a lattice,"
-        " which needs no `max_step` and no `order`"
+        "`localised` computes the exact time of every release and stick. `fixed_step` is the "
+        "textbook scheme. `continuum` is the exact solution, which needs no lattice, `max_step` or "
+        "`order`"
     )
     friction: Friction | None = key(
         "friction law; by default `coulomb`, the law of the paper", None, LAW
@@ -711,8 +709,8 @@ class Model(Block):
         "slide backwards, which happens at the stress -(1 + 2 r)"
     )
     resolved_blocks: int = key(
-        "smallest width of a pulse, below which a run is flagged. If the stress is held, the width "
-        "of the Gaussian counts, too [dx]",
+        "smallest width of a pulse, below which a run is flagged. If the stress is held, a run "
+        "with a narrower Gaussian is flagged, too [dx]",
         ge=1,
     )
 
