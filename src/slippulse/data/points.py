@@ -46,12 +46,13 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     Raises ValueError if the numbers of blocks of the runs do not fit the arrays.
     """
     sweep = over_points(sweep)
-    # Single numbers of each run. Three of them only describe the sweep, and are taken out.
+    # Single numbers of each run. The three that only describe the sweep are taken out.
     numbers = _arrays_along(sweep, "point")
     numbers.pop("point", None)
     sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
     recorded_starts = numbers.pop("row_start", None)
     block_arrays = _arrays_along(sweep, "block")
+    # The times, positions and values of samples, in arrays whose first axis is the run.
     sample_arrays = {
         str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep
     }

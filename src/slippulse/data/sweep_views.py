@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..model.checks import check_that
 from ..model.scene import ATTRIBUTES
-from .parameter_index import ParameterIndex, combinations, independent_parameters
+from .parameter_index import ParameterIndex, distinct_combinations, independent_parameters
 from .variables import VARIABLES
 
 # Attribute of a sweep that names the parameters of which `sweep` was given lists.
@@ -151,11 +151,12 @@ def _default_axes(sweep: xr.Dataset) -> list[str]:
 def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
     """Raise ValueError unless there is exactly one run for each combination of the axes' values."""
     values = {name: sweep[name].values for name in axes}
-    needed = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
-    runs = sweep.sizes["point"]
-    is_complete = len(combinations(values, axes)) == needed == runs
-    allowed = f"{needed}, one for each combination of {', '.join(axes)}"
-    check_that(is_complete, "number of runs", runs, allowed)
+    needed_count = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
+    distinct_count = len(distinct_combinations(values, axes))
+    run_count = sweep.sizes["point"]
+    is_complete = distinct_count == needed_count and run_count == needed_count
+    allowed = f"{needed_count}, one for each combination of {', '.join(axes)}"
+    check_that(is_complete, "number of runs", run_count, allowed)
 
 
 def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:

@@ -432,8 +432,9 @@ class DependenceDomains:
     ) -> np.ndarray:
         """Return the integrals of `_integrate` if the kernel K and the decay factor E are 1.
 
-        Then the integrand is the same for all points. Each integral is the integral from the left
-        end of the curve to the right end of the domain, minus that to the left end of the domain.
+        Then the integrand is the same for all points. The integral over the domain of a point is the
+        one from the left end of the curve to the right end of the domain, minus the one to its left
+        end.
         """
         # Where an integrand contains xi - g or eta - h, it has the factor k = 0. So any values of
         # these two fields will do.
@@ -499,7 +500,7 @@ def decay(alpha: float, xi_minus_g: np.ndarray, eta_minus_h: np.ndarray) -> np.n
 
 
 def kernel_function(stiffness: float, z: np.ndarray, z_at_ends: np.ndarray) -> Callable:
-    """Return a function of the order that gives the kernel K (order 0), K' (1) or K'' (2) at z.
+    """Return a function that computes, for an order 0, 1 or 2, the kernel K, K' or K'' at z.
 
     z may also contain nodes that no integral uses. z_at_ends are the values on the first and the
     last panel of each integral. If the stiffness is not negative, only these panels have nodes
