@@ -154,9 +154,10 @@ def crossed_prestress(run: AnyRun, window: float) -> dict[str, float]:
 def measure_transition(run: AnyRun, fraction: float) -> dict:
     """Return the numbers of the transition by name; none if the run has no defined transition.
 
-    Under a displacement boundary, the paper defines a transition for equal positive levels. For a
-    table, it is measured for different positive levels, too. Under a stress boundary, the paper
-    defines it for a negative level on the left and the level 0 on the right, without steps.
+    Under a displacement boundary, the paper defines a transition for equal positive levels. If the
+    pre-stress is a table of points, it is measured for different positive levels, too. Under a
+    stress boundary, the paper defines it for a negative level on the left and the level 0 on the
+    right, without steps.
 
     fraction : see `transition_stress`
     """

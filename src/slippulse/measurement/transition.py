@@ -81,7 +81,8 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     They do not converge, because in the continuum the front never stops.
 
     The transition state is "resolved", "stalled" (the lattice held up the front), or "not reached"
-    (time and length are NaN).
+    (time and length are NaN). transition_longest_wait is the longest time between two successive
+    releases on the way there, as a fraction of the transition time.
     """
     balance_distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * balance_distance, "left")

@@ -143,7 +143,10 @@ def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleati
         return ""
     if numbers["boundary"] == "stress":
         if "transition_state" not in numbers:
-            return "under a stress boundary the paper defines it only for left < 0 and right = 0"
+            return (
+                "under a stress boundary the paper defines it only for left < 0 and right = 0,"
+                " without steps, and with a balance position"
+            )
         if math.isnan(time):
             return f"the left front did not cover {MEASURE_SETTINGS['fraction']:.0%} of |x_minus|"
     elif max(numbers["left"], numbers["right"]) <= 0.0:

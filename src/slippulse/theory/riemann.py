@@ -207,12 +207,14 @@ class DependenceDomains:
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        They are the derivatives of the formula 2 du/dt = Int tau E K dx over the front t = T(x),
-        from x_l to x_r. With g = T - x and h = T + x, the argument of the kernel K is
-        k (xi - g) (eta - h). By xi, the derivative of K is k (eta - h) K', that of the left end
-        x_l (where g = xi) is dx/dg, and that of the decay factor E is -alpha/4 E. By eta, the
-        derivative of K is k (xi - g) K', that of the right end x_r (where h = eta) is dx/dh, and
-        that of E is -alpha/4 E. The other end does not move.
+        The formula 2 du/dt = Int tau E K dx, where the integral is over the front from x_l to x_r
+        and the argument of the kernel K is k (xi - g) (eta - h), has the derivatives
+
+            by xi:   k Int tau E K' (eta - h) dx - (E tau dx/dg at x_l) - alpha/2 du/dt,
+            by eta:  k Int tau E K' (xi - g) dx  + (E tau dx/dh at x_r) - alpha/2 du/dt.
+
+        The second terms arise because x_l (where g = xi) and x_r (where h = eta) move. The last
+        ones arise from the decay factor E = exp(-alpha/4 [(xi - g) + (eta - h)]).
         """
         decay_left, decay_right = self._decay_at_ends()
         # E tau dx/dg at x_l, and E tau dx/dh at x_r.

@@ -173,14 +173,14 @@ def _choose_contour(
     or a branch point of the symbol can lie. From there to CONTOUR_REACH, panels have equal lengths
     in ln |z|. excess_speed is v - 1.
     """
-    # A lower bound of (1 + b) |w| at these points. At the branch points of r it is 1. Nearer to 0
-    # there may be branch points of q, at sqrt(g) or, with drag, g/|a|. Without leaf springs, a zero
-    # of the symbol may be nearer to 0, at v - 1.
-    smallest_w = np.minimum(np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed, 1.0)
+    # A lower bound of (1 + b) |w| at these points. It is 1 for the branch points of r. With leaf
+    # springs, branch points of q may be nearer to 0: sqrt(g) or, with drag, g/|a|. Without leaf
+    # springs, a zero of the symbol may be nearer to 0: v - 1.
+    bound = np.minimum(np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed, 1.0)
     if alpha_dx:
-        smallest_w = min(smallest_w, gamma_dx2 / abs(alpha_dx))
-    # w is v z.
-    smallest_z = np.min(smallest_w / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
+        bound = min(bound, gamma_dx2 / abs(alpha_dx))
+    # The same bound for |z|, because w is v z.
+    smallest_z = np.min(bound / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
     panel_count = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
     angle = _contour_angle(excess_speed, gamma_dx2, alpha_dx)
     return make_contour(panel_count, angle), angle
