@@ -261,7 +261,9 @@ def far_field(run: AnyRun) -> dict[str, float]:
     strain_left : largest final strain where the pulse entered the far field, divided by the largest
         final strain anywhere in it
 
-    All are NaN if nothing slid in the far field at the early time.
+    All are NaN if nothing slid in the far field at the early time. profile_change is NaN if the
+    sampled far field is shorter than the distance that waves run between the two times.
+    strain_left is NaN if no position near the entry is sampled, or if the final strain is 0.
     """
     far_start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
     times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
@@ -285,10 +287,15 @@ def far_field(run: AnyRun) -> dict[str, float]:
     travelled = float(times[-1] - times[early])
     is_compared = is_far & (x + travelled <= x[-1])
     final_velocity = np.interp(x[is_compared] + travelled, x, velocity[-1])
-    largest_change = np.max(np.abs(final_velocity - velocity[early][is_compared]))
+    changes = np.abs(final_velocity - velocity[early][is_compared])
+    largest_change = np.max(changes) if changes.size else np.nan
     final_strain = np.abs(strain[-1])
+    entry_strain, largest_strain = final_strain[far_x <= entry_end], np.max(final_strain)
+    strain_left = np.nan
+    if entry_strain.size and largest_strain > 0.0:
+        strain_left = float(np.max(entry_strain) / largest_strain)
     return {
         "profile_change": float(largest_change / early_peak),
         "energy_change": float(final_energy / early_energy - 1.0),
-        "strain_left": float(np.max(final_strain[far_x <= entry_end]) / np.max(final_strain)),
+        "strain_left": strain_left,
     }

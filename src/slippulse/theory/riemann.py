@@ -434,9 +434,9 @@ class DependenceDomains:
     ) -> np.ndarray:
         """Return the integrals of `_integrate` if the kernel K and the decay factor E are 1.
 
-        Then the integrand is the same for all points. The integral over the domain of a point is the
-        one from the left end of the curve to the right end of the domain, minus the one to its left
-        end.
+        Then the integrand is the same for all points. The integral over the domain of a point is
+        the one from the left end of the curve to the right end of the domain, minus the one to the
+        left end of the domain.
         """
         # Where an integrand contains xi - g or eta - h, it has the factor k = 0. So any values of
         # these two fields will do.
@@ -451,10 +451,11 @@ class DependenceDomains:
             on_panel = np.add.reduce(partial_weights(s) * values_by_panel[panel], axis=-1)
             return before_panel[panel] + on_panel
 
+        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
+        # next panel.
         first_panel = np.minimum(self.left.panel, self.right.panel)
         up_to_right_end = integral_up_to(self.right.panel, self.right.s)
         integrals = up_to_right_end - integral_up_to(first_panel, self.left.s)
-        # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
 
 
