@@ -218,6 +218,12 @@ def test_changes_of_the_far_pulse_are_measured(run, expected):
     assert numbers == pytest.approx(expected, rel=0.03, abs=1e-3, nan_ok=True)
 
 
+def test_order_of_sampled_positions_does_not_matter():
+    run = moving(0.95, left=0.1)
+    repeated = run.isel(sample_position=[*range(8000, -1, -1), 4000])
+    assert far_field(repeated) == far_field(run)
+
+
 @pytest.mark.parametrize(
     ("level", "dx", "ratio", "state"),
     [

@@ -266,10 +266,13 @@ def far_field(run: AnyRun) -> dict[str, float]:
     strain_left is NaN if no position near the entry is sampled, or if the final strain is 0.
     """
     far_start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
-    times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
+    times = np.asarray(run["sample_time"])
+    # Sampled positions may be in any order, and may repeat.
+    x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)
     # Index of the early time. The index of the final time is -1.
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
-    velocity, slip = np.asarray(run["sample_velocity"]), np.asarray(run["sample_slip"])
+    velocity = np.asarray(run["sample_velocity"])[:, order]
+    slip = np.asarray(run["sample_slip"])[:, order]
     is_far = x >= far_start
     early_peak = np.max(velocity[early][is_far], initial=0.0)
     if np.count_nonzero(is_far) < MIN_FAR_SAMPLES or not early_peak > 0.0:
