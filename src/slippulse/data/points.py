@@ -85,11 +85,12 @@ def _starts_of_runs(
         # Each run begins where the previous one ends.
         starts = np.cumsum(sizes) - sizes
         is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
+        allowed = "numbers of blocks whose sum is the length of x"
     else:
         # If runs were selected from a sweep, the arrays still contain the blocks of all its runs.
         starts = recorded_starts
         is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
-    allowed = "numbers of blocks whose sum is the length of x"
+        allowed = "numbers of blocks that, from row_start on, fit into x"
     check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
     return starts
 
