@@ -147,9 +147,10 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 
 @cache
 def transitions(evidence: Evidence) -> list[Runs]:
-    """Return runs under a displacement boundary, for both criteria of T_trans.
+    """Return runs under a displacement boundary, for both ends of the transition (criteria).
 
-    Exact solutions are measured at the first stick only, and lattices also at the printed slip.
+    The transition ends at the first stick, or when the slip reaches the value that the paper
+    prints. Exact solutions are measured at the first stick only.
     """
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
@@ -294,8 +295,8 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge an estimate of the transition under a displacement boundary, by both criteria.
 
-    The transition is at the first stick, or when the slip reaches the printed value. Not all runs
-    reach this value, so the claim also shows how many do.
+    The transition is at the first stick, or when the slip reaches the value that the paper prints.
+    Not all runs reach this value, so the claim also shows how many do.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
     # Count the runs that reach the printed slip.
@@ -365,7 +366,7 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
         runs, varied_columns = arrests(evidence), ["left"]
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
-        """Fit both exponents to the runs of one combination, and judge the one farther from 1."""
+        """Fit T and L as powers of their estimates, and judge the exponent farther from 1."""
         exponents = {}
         for quantity, symbol in SYMBOLS.items():
             exponents[symbol] = fit_exponent(
@@ -395,7 +396,7 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        """Judge both fronts in the runs of one combination, and return the worse result."""
+        """Compare the mean speeds of both fronts with 1, and return the worse result."""
         left = evidence.approximate(id, tables, measured="covered / time", predicted="1")
         # The length is the distance between the fronts, and the left front has covered a part of
         # it. The right front has covered the rest.
@@ -418,7 +419,7 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge the runs of one combination; a tolerance above 0 limits the additional time."""
+        """Judge if the arrest takes longer than at speed 1; a tolerance limits how much longer."""
         return replace(
             takes_longer(tables),
             extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),

@@ -178,7 +178,7 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
 
 
 def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
-    """Return a resolved simulation with only the smallest and largest value of each ORDERED list.
+    """Return a resolved simulation with only the smallest and largest number of each list.
 
     If any run is refused or expensive, one at these values is, too. Of an ensemble of rough
     profiles, the first and the last seed are kept. The job checks all seeds before it simulates.
