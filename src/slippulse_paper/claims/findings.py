@@ -96,9 +96,9 @@ def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
         table = table.set_index(["left", "width", "gamma", "release", "dx", "damping_ratio"])
         # One row for each scene, and one column for each damping ratio, in ascending order.
         lengths = table["transition_length"].unstack()
-        if lengths.empty:
+        if 0.0 not in lengths:
             return {}
-        most_damped, undamped = lengths.iloc[:, -1], lengths.iloc[:, 0]
+        most_damped, undamped = lengths.iloc[:, -1], lengths[0.0]
         ratios = most_damped / undamped
         values[f"{boundary}_change"] = float(ratios.median())
         values[f"{boundary}_runs"] = float(ratios.count())

@@ -463,6 +463,8 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
         if has_ratio.any():
             runs.append(lattice_runs([table[has_ratio] for table in tables]))
+    # In a changed configuration, no run may have these ratios. All runs are then judged together.
+    runs = runs or [Runs({"solution": "lattice"}, tables)]
     judge = partial(judge_arrest_distance, evidence, id)
     over_all_runs = judge(tables)
     ratio = ratios(finest, "last_release_distance", "balance_distance")
@@ -508,6 +510,9 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
     The two finest lattices must agree.
     """
     finest, middle, _ = evidence.lattices("scaling_displacement")
+    if finest.empty:
+        # All runs are flagged, and so the claim is not testable.
+        return Qualitative(decided=[])
     on_finest, on_middle = divergence_by_level(finest), divergence_by_level(middle)
     answers = agreed_answers(
         [level.diverges for level in on_finest], [level.diverges for level in on_middle]
