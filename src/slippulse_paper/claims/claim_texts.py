@@ -66,7 +66,7 @@ def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> d
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
-    """Return how many sentences of the paper are tested, and how many are not for each reason.
+    """Count the sentences of the paper that claims test, and those that none tests, by reason.
 
     The keys are those of REASONS, and "all" for the total.
     """

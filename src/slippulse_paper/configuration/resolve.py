@@ -187,6 +187,7 @@ def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
     if "profiles" in ends:
         ends["profiles"] = ends_of_ensembles(ends["profiles"])
     if "beyond" in ends:
+        # This mapping has a list of levels, which the pre-stress has beyond a step.
         ends["beyond"] = with_ends_of_lists(ends["beyond"])
     for key in ORDERED:
         if isinstance(ends.get(key), list):
