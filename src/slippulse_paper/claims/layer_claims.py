@@ -479,7 +479,6 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
     varied = with_varied_energy(pulses)
-    thinnest = with_smallest_gamma(varied)
     numbers = {
         "pulses": float(len(pulses)),
         "level": float(varied.index.get_level_values("tau0")[0]),
@@ -487,7 +486,7 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "brittle_energy": BRITTLE_ENERGY,
         "level_spread": spread_with_level(pulses),
         "formula_speed": float(varied["paper_speed"].max()),
-        "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
+        "thinnest_formula": float(with_smallest_gamma(varied)["paper_pulse_width"].max()),
     }
     quantities = pulse_quantities(pulses)
     # The time of the first stick, divided by the time in which a shear wave runs to the top and
@@ -546,7 +545,8 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
         same friction and with damping; width and slip are divided by those of the paper's formulas
     less_damped : width in one dimension with the smaller damping, divided by the width with the
         larger one
-    thinnest_width : pulse width, for the smallest gamma
+    thinnest_width : pulse width for the smallest gamma, at which the layer is thinnest compared
+        with the pulses
     """
     varied = with_varied_energy(pulses)
     brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
