@@ -287,6 +287,7 @@ class Curve:
         The right one is traced back to the right, to where T + x = eta = t + y. First the panels
         are found, and then the parameters s on them.
         """
+        # The lowest values of T + x and T - x beyond each panel, which are searched by bisection.
         levels_to_right, levels_to_left = self._lowest_levels
         right, meets_right = _panels_of_crossings(
             self.edges, lowest_levels=levels_to_right, y=y, level=eta
@@ -303,6 +304,7 @@ class Curve:
         numbers_right = self.polynomial_numbers("t_plus_x", right)
         numbers = np.concatenate([numbers_left, numbers_right])
         s = self._find_parameters(numbers, np.concatenate([xi, eta]))
+        # A characteristic that does not meet the curve has the parameter of the nearest end.
         s_left = np.where(meets_left, s[: y.size], -1.0)
         s_right = np.where(meets_right, s[y.size :], 1.0)
         return Crossing(left, s_left, meets_left), Crossing(right, s_right, meets_right)

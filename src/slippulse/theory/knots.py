@@ -111,8 +111,8 @@ class Knots(NamedTuple):
         """Return a mask of the intervals in which the edge jumps.
 
         It jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
-        although it is not known to be slow there. A change of the edge from faster to slower than
-        the waves counts as a jump.
+        although it is not known to be slow there. Its speed must be known at both knots, which it
+        is not at a BRIEF_SLIP. A change from faster to slower than the waves counts as a jump.
         """
         duration = np.abs(self.stick[k + 1] - self.stick[k])
         length = self.x[k + 1] - self.x[k]

@@ -324,7 +324,8 @@ class FreeBoundary:
 
         x has the positions of the front, at which the integrals end. Both results have one row for
         each integral, and one column for each node of the known curve and of the new panel. E is
-        the decay factor exp(-alpha (d_xi + d_eta)/4) by drag, and z = k d_xi d_eta.
+        the decay factor exp(-alpha (d_xi + d_eta)/4) by drag, and z = k d_xi d_eta. d_xi and d_eta
+        are T - x and T + x at the front, minus those at the node.
         """
         k, alpha = self.front.stiffness, self.front.alpha
         # T + x at the front, where T - x has its value at the entry.
@@ -332,7 +333,7 @@ class FreeBoundary:
         d_eta = eta[:, None] - np.append(self.known_t_plus_x, eta)
         z = k * self.d_xi * d_eta
         # This function computes J0(sqrt z) (order 0), or its derivative by z (order 1).
-        bessel = kernel_function(k, z, z)
+        bessel = kernel_function(k, z, z_at_ends=z)
         exponential = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
         kernel = exponential * bessel(0)
         # If x changes, d_eta changes by 2 dx. So z changes by 2 k d_xi dx, and E by -alpha/2 E dx.
@@ -576,8 +577,9 @@ class SlowFront:
     def panel_until_arrival(self, entry: Entry) -> Panel | None:
         """Return a panel for the time in which the front waits for the wave from an entry.
 
-        On this panel the front is moved by the entries that were skipped before this one, by a
-        negligible distance. None if no entry was skipped, or if the wave has arrived already.
+        Until then only waves arrive that were skipped, because all of them together move the front
+        by a negligible distance, ``entry.skipped_motion``. None if no entry was skipped, or if the
+        wave has arrived already.
         """
         # T - x does not change along the wave.
         t_minus_x = self.value_at("t_minus_x", entry)
@@ -587,7 +589,7 @@ class SlowFront:
         if entry.skipped_motion == 0.0 or has_arrived:
             return None
         # x and T grow linearly with the parameter of the panel, which runs from -1 to 1. The source
-        # is tau dx/ds, and dx/ds is half of the motion.
+        # is tau dx/ds, where tau is negative and dx/ds is half of the motion.
         return Panel(
             x=self.x0 + 0.5 * (x_end - self.x0) * (1.0 + NODES),
             time=self.t0 + 0.5 * (time_end - self.t0) * (1.0 + NODES),
@@ -623,7 +625,7 @@ class SlowFront:
         panel_now, panel = entries.panel.tolist()
         s_now, s_later = entries.s.tolist()
         # If the wave that arrives now entered close to the right end of this panel, the next entry
-        # is this end. The position of the later wave would leave out the entries in between.
+        # is this end, because the entry of the later wave would leave out those in between.
         right_end = self.curve.panels[panel].end
         if abs(right_end.time - right_end.x - t_minus_x) < 10.0 * delay:
             return Entry(panel, s=1.0)
@@ -669,8 +671,8 @@ class SlowFront:
         """Return the positions of the front at the nodes of a chunk as if gamma were 0.
 
         Without leaf springs (gamma = 0) the integral of tau from the entry to the front is 0. So
-        the front moves right by -(tau at the entry)/(tau at the front) times the distance from the
-        first entry of the chunk to the left. The ratio is kept between 0.001 and 10.
+        if the entry moves left by a distance, the front moves right by the same distance times
+        -(tau at the entry)/(tau at the front). This ratio is kept between 0.001 and 10.
         """
         first_entry = Entry(chunk.panel, chunk.start)
         # The source is tau dx/ds.

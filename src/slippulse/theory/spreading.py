@@ -72,7 +72,7 @@ class Stretch:
     curves: dict[float, Curve] = field(default_factory=dict)
 
     def curve(self, side: float = RIGHT) -> Curve:
-        """Return the panels as one curve, with a side turned to the right.
+        """Return the panels as one curve, with a side (LEFT = -1, RIGHT = +1) turned to the right.
 
         If the left side is turned to the right, the curve is the mirror image at x = 0.
         """
@@ -186,14 +186,14 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
     if not nucleations:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
-    # The first and the last interval have a neighbour at infinity.
-    with_neighbours = [(-np.inf, -np.inf), *nucleations, (np.inf, np.inf)]
     stretches = []
-    for number, (left, right) in enumerate(nucleations, start=1):
-        _, end_before = with_neighbours[number - 1]
-        start_after, _ = with_neighbours[number + 1]
+    for number, (left, right) in enumerate(nucleations):
+        is_first, is_last = number == 0, number == len(nucleations) - 1
+        # The nearest released positions on both sides of this interval.
+        end_before = -np.inf if is_first else nucleations[number - 1][1]
+        start_after = np.inf if is_last else nucleations[number + 1][0]
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
-        # A position on the left, turned to the right, has the opposite sign.
+        # For the left front, x is mirrored: `Stretch` treats both fronts as right fronts.
         stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
             # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.

@@ -336,16 +336,15 @@ class PartWithEdge(Part):
         is_kept = np.full(k.size, True)
         jumps = k[knots.has_jump(k)]
         for jump, before_jump in zip(jumps, knots.ends_before_jumps(jumps), strict=True):
-            # At this time at the latest, a wave from the jump is back at the knot before the jump.
+            # At this time at the latest, a wave from the jump arrives at the knot before the jump.
             # The edge ran from this knot to the jump faster than the waves, whose speed is 1. So
             # neither the way there nor the way back takes longer than the length of the interval.
             length = knots.x[jump + 1] - knots.x[jump]
             latest_return = knots.stick[before_jump] + 2.0 * length
-            # A wave that leaves the knot before the jump at this time arrives at another knot at
-            # the moment at which the other knot sticks.
-            departure_time = knots.stick - np.abs(knots.x - knots.x[before_jump])
-            is_outside = departure_time < latest_return
-            is_kept &= is_outside[k] | is_outside[k + 1]
+            # From there the wave runs on to the other knots.
+            wave_arrival = latest_return + np.abs(knots.x - knots.x[before_jump])
+            sticks_before_wave = knots.stick < wave_arrival
+            is_kept &= sticks_before_wave[k] | sticks_before_wave[k + 1]
         return k[is_kept]
 
     def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
@@ -500,9 +499,10 @@ class PartWithEdge(Part):
         return first
 
     def _first_at_knots(self) -> FirstStick | None:
-        """Return where and when something first sticks, by the knots; None if no knot sticks.
+        """Return where and when something first sticks, as far as the knots show it.
 
-        This is at a knot, or at a minimum of the trailing edge between two knots.
+        This is at a knot, or at a minimum of the trailing edge between two knots. None if no knot
+        sticks.
         """
         knots = self.knots
         has_stuck = knots.kind != SLIDING
@@ -520,7 +520,7 @@ class PartWithEdge(Part):
         earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         may_contain_first = self._may_have_minimum(error) & (earliest < first.time)
         for k in np.flatnonzero(may_contain_first).tolist():
-            minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
+            minimum = self._minimum_between(float(knots.x[k]), float(knots.x[k + 1]))
             # A difference that is a rounding error does not count.
             if minimum and minimum.time < first.time - ROUNDING_ERROR:
                 first = minimum
