@@ -259,9 +259,9 @@ class FreeBoundary:
         """Compute the quantities that do not depend on the unknown positions of the front.
 
         Each node of the chunk is an entry, and belongs to one integral over the curve, from this
-        entry to the front. The weights, and d_xi, T - x at the entry minus T - x at a node of the
-        curve, have one row for each integral. They have one column for each node, from the panel of
-        the entries on.
+        entry to the front. The weights and d_xi have one row for each integral, and one column for
+        each node of the curve, from the panel of the entries on. d_xi is T - x at the entry minus
+        T - x at the node.
         """
         curve, panel = front.curve, chunk.panel
         s = chunk.parameters()
@@ -485,19 +485,19 @@ class SlowFront:
                 return self.entry_behind_slow_front()
             skipped = self.entries_to_skip(Entry(panel, s), skipped_motion, negligible)
             skipped_motion = skipped.total_motion
-            if not skipped.skips_all:
-                # On a later panel, all entries of the panels before it have been skipped.
-                has_skipped = skipped.skips_any or panel < first.panel
-                if not has_skipped:
-                    return first
-                if not skipped.next_moves_on:
-                    # The entries after the skipped ones would move the front back.
-                    return NO_ENTRY
-                # The motion must be positive, since a motion of 0 means that nothing was skipped.
-                min_motion = 0.1 * ROUNDING_MOTION * self.size
-                return Entry(panel, skipped.last_s, max(skipped_motion, min_motion))
-            # The next panel is examined from its right end.
-            s = 1.0
+            if skipped.skips_all:
+                # The next panel is examined from its right end.
+                s = 1.0
+                continue
+            is_first_skipped = skipped.skips_any or panel < first.panel
+            if not is_first_skipped:
+                return first
+            if not skipped.next_moves_on:
+                # The entries after the skipped ones would move the front back.
+                return NO_ENTRY
+            # The motion must be positive, since a motion of 0 means that nothing was skipped.
+            min_motion = 0.1 * ROUNDING_MOTION * self.size
+            return Entry(panel, skipped.last_s, max(skipped_motion, min_motion))
         return NO_ENTRY
 
     def entry_left_of(self, last_entry_x: float) -> Entry:

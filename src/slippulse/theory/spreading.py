@@ -117,7 +117,9 @@ class Stretch:
                 if s > -1.0:
                     kept_panels.append(panel.left_part(float(s), x_of_cut))
         time = kept_panels[-1].time_ends[1] if kept_panels else 0.0
-        self.panels, self.curves = turned_to_right(side, kept_panels), {}
+        self.panels = turned_to_right(side, kept_panels)
+        # The curves that were made from the old panels are no longer valid.
+        self.curves = {}
         self.ends[side] = Point(x, time)
         self.restarts[side] = [start for start in self.restarts[side] if side * start < x_of_cut]
 
@@ -291,8 +293,8 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     if not (delay_of_left(low) <= 0.0 <= delay_of_left(high)):
         return None
     x = root_between(delay_of_left, low, high, xtol=1e-14)
-    # If one of the fronts is slow where they meet, the curve has a restart there. A slow front
-    # takes longer for the last distance than a wave, whose speed is 1.
+    # Like a slow front that becomes fast again, a slow front that meets another one is a restart of
+    # the curve. It takes longer for the last distance than a wave, whose speed is 1.
     left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
     right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
     durations = np.abs(np.diff([left_times, right_times]))

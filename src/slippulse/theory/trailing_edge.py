@@ -296,7 +296,8 @@ class PartWithEdge(Part):
         new_knots = self._make_knots(x, self._exact_stick_time(x, knots))
         middle_knots = new_knots.select(np.s_[inner_piece_starts.size :])
         refined = knots.joined(new_knots)
-        self._mark_slow_intervals(refined, piece_starts)
+        # The kinds of some knots are changed in place.
+        self._set_kind_of_slow_intervals(refined, piece_starts)
         is_unresolved = ~knots.predicts_middle(halved, middle_knots)
         unresolved_halves = [knots.x[halved[is_unresolved]], middles[is_unresolved]]
         pieces = np.searchsorted(refined.x, piece_starts.ravel())
@@ -347,7 +348,7 @@ class PartWithEdge(Part):
             is_kept &= sticks_before_wave[k] | sticks_before_wave[k + 1]
         return k[is_kept]
 
-    def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
+    def _set_kind_of_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
         """Change the kind of knots to SLOWER_THAN_WAVES where a slow edge looked like a jump.
 
         An interval in which the edge takes longer than a wave seems to have a jump, and was cut
