@@ -473,8 +473,9 @@ def _panels_of_crossings(
 def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Return the values of polynomials (row 0) and their derivatives (row 1) at parameters s.
 
-    There is one parameter for each polynomial. coefficients come from `with_slopes`. For speed,
-    each polynomial is split into four polynomials q of the fourth power of s (Estrin's scheme):
+    There is one parameter for each polynomial. coefficients come from `with_slopes`, with the axes
+    [group of four powers, row of the group, polynomial]. For speed, each polynomial is split into
+    four polynomials q of the fourth power of s (Estrin's scheme):
 
         p(s) = q_0(s^4) + s q_1(s^4) + s^2 q_2(s^4) + s^3 q_3(s^4).
     """

@@ -98,7 +98,8 @@ class FastFront:
         # The axes are [Gaussian, feature].
         features = centres[:, None] + widths[:, None] * FEATURE_DISTANCES
         self.features = np.unique(features)
-        # A Gaussian is narrow compared with the length over which waves change, 1/kernel_rate.
+        # A Gaussian is narrow compared with the length over which waves change, 1/kernel_rate. This
+        # length is infinite without leaf springs and drag.
         is_narrow = (widths * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
         self.narrow_features = features[is_narrow].ravel()
 
@@ -120,8 +121,9 @@ class FastFront:
     def marks(self) -> list[float]:
         """Positions from which waves come, because the motion of the front changes there.
 
-        These are the positions where two pieces meet. Only the kinks of a table of points are left
-        out: the pre-stress is continuous there, and has the same sign on both sides.
+        These are the positions where two pieces (intervals of smooth pre-stress of one sign) meet.
+        Only the kinks of a table of points are left out: the pre-stress is continuous there, and
+        has the same sign on both sides.
         """
         marks = []
         for piece, next_piece in pairwise(self.pieces):

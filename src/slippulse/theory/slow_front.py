@@ -310,8 +310,9 @@ class FreeBoundary:
         dx_ds = NODES_TO_DERIVATIVES @ x
         integrals = over_known + prestress_integral + integrate_kernel_minus_1 @ (tau * dx_ds)
         # The derivatives of all integrals (rows) by all positions (columns). A position changes
-        # dx/ds and tau at its node. It also changes the kernel: in its own integral at all nodes,
-        # and in each other integral at its node, by the opposite amount.
+        # dx/ds and tau at its node. The kernel depends on T + x at the end of an integral minus
+        # T + x at a node. So a position changes it at all nodes of its own integral, and with the
+        # opposite sign at its own node of each integral.
         by_dx_ds = (integrate_kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
         by_tau = integrate_kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
         by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, known_count:] * (tau * dx_ds)
@@ -452,7 +453,8 @@ class SlowFront:
         x_end = mark if reaches_mark else float(NODES_TO_ENDS[1] @ x)
         panel = self.panel_of_chunk(chunk, x, x_end)
         next_length = PANEL_LENGTH
-        # A chunk that ends within its panel of entries, but not at an event, was too long at first.
+        # A chunk that stops before the left end of its panel of entries (s = -1), but not at an
+        # event, was too long at first.
         if event.name == "none" and chunk.stop != -1.0:
             next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
         last_entry_x = self.position(Entry(chunk.panel, chunk.stop))
@@ -613,8 +615,8 @@ class SlowFront:
 
         This is used if the wave entered through an earlier part of the slow front itself. Two waves
         are traced back from the front to the curve: the one that arrives now, and one that arrives
-        slightly later. Next entries are on the panel where the later wave has entered. None if it
-        comes from beyond the end of the curve.
+        slightly later. The next entries are on the panel where the later wave has entered. None if
+        this wave comes from beyond the end of the curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))
@@ -629,6 +631,7 @@ class SlowFront:
         right_end = self.curve.panels[panel].end
         if abs(right_end.time - right_end.x - t_minus_x) < 10.0 * delay:
             return Entry(panel, s=1.0)
+        # The wave that arrives now is preferred if it has entered on this panel.
         s = s_now if panel_now == panel else s_later
         # If nearly nothing of the panel is left, from s down to its left end at -1, the next panel
         # is used. Such a small remainder cannot be resolved.

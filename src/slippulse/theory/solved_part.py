@@ -79,14 +79,14 @@ class SolvedPart(PartWithEdge):
         release = self.curve.arrival(x)
         end = np.minimum(self.approximate_stick_time(x), horizon(x))
         has_slipped = end > release
-        x, release, end = x[has_slipped], release[has_slipped], end[has_slipped]
+        x, end = x[has_slipped], end[has_slipped]
+        release = release[has_slipped]
         slip_at_middle = self.field("slip", x, 0.5 * (release + end))
         slip_at_end = self.field("slip", x, end)
         smallest_gain = np.minimum(slip_at_middle, slip_at_end - slip_at_middle)
         falls = smallest_gain < -FALL_TOLERANCE * np.max(slip_at_end, initial=0.0)
-        return [
-            Point(*point) for point in zip(x[falls].tolist(), release[falls].tolist(), strict=True)
-        ]
+        points = zip(x[falls].tolist(), release[falls].tolist(), strict=True)
+        return [Point(*point) for point in points]
 
     def largest_velocity(self, until: float, horizon: Callable) -> float:
         """Return the largest slip velocity of the part, until a time and before a horizon.

@@ -190,7 +190,8 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
     stretches = []
     for number, (left, right) in enumerate(nucleations):
-        is_first, is_last = number == 0, number == len(nucleations) - 1
+        is_first = number == 0
+        is_last = number == len(nucleations) - 1
         # The nearest released positions on both sides of this interval.
         end_before = -np.inf if is_first else nucleations[number - 1][1]
         start_after = np.inf if is_last else nucleations[number + 1][0]
