@@ -104,7 +104,10 @@ class Knots(NamedTuple):
         return self.has_end_kinds(k, FASTER_THAN_WAVES, FASTER_THAN_WAVES) & ~self.has_jump(k)
 
     def touches_brief_slip(self, k: np.ndarray) -> np.ndarray:
-        """Return a mask of the intervals with at least one knot of the kind BRIEF_SLIP."""
+        """Return a mask of the intervals with at least one knot of the kind BRIEF_SLIP.
+
+        The slip of such a knot is too brief to show whether the edge is faster than the waves.
+        """
         return (self.kind[k] == BRIEF_SLIP) | (self.kind[k + 1] == BRIEF_SLIP)
 
     def has_jump(self, k: np.ndarray) -> np.ndarray:

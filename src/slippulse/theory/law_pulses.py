@@ -175,13 +175,13 @@ def _weakening_zone_and_slip_beyond(
     if not is_beyond_zone[first_beyond] or has_stopped[:first_beyond].any():
         return math.nan, slip_in_zone
 
-    def slip_to_go(position: float) -> float:
+    def excess_slip(position: float) -> float:
         """Return the slip minus the weakening distance, which is 0 at the end of the zone."""
         return float(slip_in_zone.evaluate(position)) - weakening
 
     # The end of the zone is between the first sample beyond it and the sample before (or xi = 0).
     before = 0.0 if first_beyond == 0 else float(xi[first_beyond - 1])
-    end = root_between(slip_to_go, float(xi[first_beyond]), before)
+    end = root_between(excess_slip, float(xi[first_beyond]), before)
     start = np.array([float(slip_in_zone.evaluate(end, order)) for order in range(3)])
     slip_beyond_zone = _LinearSlip(
         damping=damping, inertia=inertia, stiffness=gamma, load=tau0, start=start

@@ -161,8 +161,8 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
 def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.ndarray:
     """Return the integral of a density along the curve, for each pair of positions a and b.
 
-    It covers the past of a and of b, except the past of the point c. The density is a function per
-    unit of the parameter of each panel, given at the nodes.
+    It covers the past of a and of b, except the past of the point c, from which waves arrive at
+    both. The density is a function per unit of the parameter of each panel, given at the nodes.
     """
     to_a_begins, to_c_begins, to_c_ends, to_b_ends = _integrals_from_left_end(density, past)
     return to_c_begins - to_a_begins + to_b_ends - to_c_ends

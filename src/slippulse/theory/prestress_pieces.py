@@ -36,7 +36,7 @@ class Piece(NamedTuple):
 
 
 def uniform_background(level: float) -> Interval:
-    """Return the background of one level everywhere."""
+    """Return the background (a pre-stress without its Gaussians) that has one level everywhere."""
     return Interval(left=-np.inf, right=np.inf, left_value=level, right_value=level)
 
 

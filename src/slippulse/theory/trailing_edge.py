@@ -312,7 +312,7 @@ class PartWithEdge(Part):
         Intervals that are too short are not divided.
         """
         has_jump = knots.has_jump(k)
-        # Only one of the two knots sticks before the final time.
+        # Only one of the two knots of the interval sticks before the final time.
         reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
         min_length = np.full(k.size, MIN_INTERVAL * self.scale)
         min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
