@@ -378,9 +378,9 @@ class SlowFront:
     def next_panel(self, mark: float, progress: Progress) -> Advance:
         """Continue the front by the next panel, whose entries lie on one panel of the curve.
 
-        mark is the end of the negative pre-stress; it may be infinite. The panel ends at the latest
-        where the front stops, for a while or for ever. The reason in the result is None if the
-        front can go on, and otherwise one of
+        mark is the end of the negative pre-stress; it may be infinite. progress is the state that
+        the panel before has left. The new panel ends at the latest where the front stops, for a
+        while or for ever. The reason in the result is None if the front can go on, otherwise one of
 
             "mark"        the new panel ends at the mark;
             "stops"       the front could only run back;

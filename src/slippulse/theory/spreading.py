@@ -279,6 +279,7 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     Both are cut at the position that their fronts reach at the same time. So each position belongs
     to the front that arrives there first.
     """
+    # If their known paths do not overlap, the fronts have not met.
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
         return None
     left_curve, right_curve = left.curve(), right.curve()
