@@ -491,6 +491,7 @@ class SlowFront:
                 # The next panel is examined from its right end.
                 s = 1.0
                 continue
+            # If the search has gone on to a panel farther left, the first entry has been skipped.
             is_first_skipped = skipped.skips_any or panel < first.panel
             if not is_first_skipped:
                 return first
