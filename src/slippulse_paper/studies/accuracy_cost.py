@@ -78,7 +78,7 @@ class Setting(NamedTuple):
 
     def run_pulse(self, damping_ratio: float) -> xr.Dataset:
         """Simulate a pulse under a displacement boundary."""
-        return self._run(UNIFORM_PRESTRESS, DURATION, GAMMA, damping_ratio)
+        return self._run(UNIFORM_PRESTRESS, DURATION, gamma=GAMMA, damping_ratio=damping_ratio)
 
     def run_crack(self) -> xr.Dataset:
         """Simulate a crack that turns into a pulse under a stress boundary.
@@ -91,7 +91,7 @@ class Setting(NamedTuple):
         crack = cached_crack(ARRESTING_PRESTRESS, damping_ratio)
         duration = RELATIVE_CRACK_DURATION * crack.transition(COVERED_FRACTION).time
         coarser = self._replace(dx=RELATIVE_CRACK_SPACING * self.dx)
-        return coarser._run(ARRESTING_PRESTRESS, duration, 0.0, damping_ratio)
+        return coarser._run(ARRESTING_PRESTRESS, duration, gamma=0.0, damping_ratio=damping_ratio)
 
     def _run(
         self, prestress: Prestress, duration: float, gamma: float, damping_ratio: float
