@@ -228,7 +228,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     Only the right pulse counts. Its death and its velocity are compared with the integral of the
     pre-stress of its own run. The survival curve is compared with that of a random walk.
 
-    smooth_push : push that a pulse has far away if there is no roughness; a column of the table
+    smooth_push : push that a pulse has far away if there is no roughness, for the column push
     """
     parameters = ensemble.parameters
     cell_of_start = int(np.searchsorted(CELL_MIDDLES, START))
