@@ -146,6 +146,8 @@ def measured_outcome(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
 
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
+
+    front_window : last fraction of the path over which the front speed is measured
     """
     if case.quantity == "velocity error":
         # The solver does not offer single precision, so this is the error of a simple program.

@@ -93,7 +93,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def _rows_of_all_laws(still_fraction: float) -> list[dict[str, Any]]:
-    """Simulate ruptures under all laws at all levels, and return one row for each."""
+    """Simulate ruptures under all laws at all levels, and return one row for each.
+
+    still_fraction : see `_simulated_row`
+    """
     rows = []
     for level in LEVELS:
         laws: list[Friction] = []
@@ -118,6 +121,8 @@ def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
     """Simulate ruptures under slip weakening at several spacings and d_c, with the exact speed.
 
     The exact speed is NaN if the fracture energy is too large for a rupture.
+
+    still_fraction : see `_simulated_row`
     """
     rows = []
     for level, dx, distance_over_dx in product(

@@ -108,7 +108,10 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
 
 
 def ensembles_of(data: xr.Dataset, profiles: Iterable[dict]) -> Iterator[Ensemble]:
-    """Yield the ensembles of a sweep; ``profiles`` has the pre-stress profile of each run."""
+    """Yield the ensembles of a sweep. The runs of an ensemble differ only in the seed.
+
+    profiles : the pre-stress profile of each run
+    """
     ensembles: dict[tuple, Ensemble] = {}
     for run, profile in zip(runs_in(data), profiles, strict=True):
         run_parameters = {name: run.attrs[name] for name in RUN_KEYS}
@@ -287,6 +290,7 @@ def predicted_survival(
     """Return the mean over all pulses of the probability to survive to each distance, by theory.
 
     pushes : push of each pulse (see `push_at`) at START, where its random walk begins
+    parameters : parameters of the ensemble of rough pre-stress
     """
     # The theory needs a positive distance, so distances up to START count as one cell beyond it.
     beyond_start = np.maximum(distances - START, CELL_WIDTH)
