@@ -151,7 +151,8 @@ def right_panel_rows(
         correction=velocity - exact,
         pull=pull,
         independent_pull=pull,
-        weight=1.0,
+        # It is only compared.
+        weight=0.0,
     )
 
 

@@ -356,7 +356,7 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     exact_velocity : two waves meet at the crest. One left x_* and ran to the right. The other left
         the right front, and ran to the left. The velocity is half of the integral of the pre-stress
         between the points where they started.
-    is_crack : True if the blocks near the nucleation, at START, still slide
+    is_crack : True if the block at START, near the nucleation, still slides
 
     The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
@@ -365,11 +365,12 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     integral_to_front = float(np.interp(start_on_front, CELL_MIDDLES, integral))
     # x_* is the position on the left where the integral is smallest.
     integral_to_x_star = integral[CELL_MIDDLES < 0.0].min()
-    first_block_beyond_start = np.searchsorted(run["x"], START)
+    block = np.searchsorted(run["x"], START)
+    still_slides = np.isfinite(run["release_time"][block]) and np.isnan(run["stick_time"][block])
     return {
         "velocity": float(np.interp(crest, run["x"], run["slip_velocity"])),
         "exact_velocity": 0.5 * (integral_to_front - integral_to_x_star),
-        "is_crack": bool(np.isnan(run["stick_time"][first_block_beyond_start])),
+        "is_crack": bool(still_slides),
     }
 
 
