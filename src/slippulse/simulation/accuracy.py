@@ -280,7 +280,8 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
     stops_on_left = prestress.left < 0.0 and prestress.right == 0.0
     if stops_on_left and distances:
-        # The errors of T_trans and of slip velocity are these constants times dx/distance.
+        # The errors of T_trans and of slip velocity are these constants times dx/distance. The
+        # first distance is the one on the left or, in a table, the shortest one.
         if not prestress.steps:
             transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / transition_error)

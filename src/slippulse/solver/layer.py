@@ -397,7 +397,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # infinite, all columns are advanced, including those at x < 0.
     trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation_columns, trail_columns)
-    # The first of these three are ``fields`` themselves, which `advance_layer` changes.
+    # The first of its three groups of fields is ``fields``, which `advance_layer` changes in place.
     damped = damped_fields(elastic, fields)
     advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
     # The energy is computed at the time of the velocities that are copied here. This needs the
