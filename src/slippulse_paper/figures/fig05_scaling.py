@@ -89,7 +89,7 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:
     """Add an inset with the pre-stress of a few runs: some levels, with the narrowest Gaussian.
 
-    level_column : name of the colour scale of the levels, tau_0 or left
+    level_column : name of the level, tau_0 or left, which has a colour scale
     """
     has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
     narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]

@@ -57,8 +57,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     """Return the rows of five parts of the figure, which the column part names.
 
     field : velocity in the layer at one time
-    pulse : one row for each pulse on its finest grid, measured at the last station (see
-        `drawn_pulses`)
+    pulse : one row for each pulse on its finest grid, measured where it passes the last station on
+        the fault
     free : the same for pulses in a layer whose top is free to rise
     coupled : width along the path of pulses whose strength depends on the normal stress
     map : what a pulse does (column outcome) for each gamma and fracture energy

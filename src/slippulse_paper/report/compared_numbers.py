@@ -220,6 +220,7 @@ def named_in_errors(path: Path) -> Iterator[None]:
         yield
     except UnreadableFile:
         raise
+    # The text of a LookupError is only the name of what is missing.
     except LookupError as error:
         raise UnreadableFile(path, f"no {error}") from None
     except (OSError, ValueError, TypeError, RecursionError) as error:

@@ -107,7 +107,7 @@ def verdicts(lines: Iterable[Line]) -> str:
     rows = []
     for line in lines:
         links = []
-        # A verdict links to the first claim that has it. The subjects of the claims follow.
+        # A verdict links to the first claim that has it. What its claims are about follows.
         for claim, subjects in line.verdicts:
             link = f"[{claim.verdict}](../claims.html#{claim.id})"
             links.append(f"{link} {subjects}".strip())
@@ -205,7 +205,7 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
     readings : the part ``published`` of the configuration
     """
-    # The further numbers of these two claims are our values of the readings, by their statements.
+    # These two claims have our values as further numbers, by the statement of the reading.
     left_panel = ledger("published_space_time_figure").further
     right_panel = ledger("published_space_time_figure_right").further
     our_values = left_panel | right_panel

@@ -26,8 +26,8 @@ DIGITS = 15
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the table ``predicted`` for the resolved simulation ``sweep`` in the settings.
 
-    The settings also have the topics of the predictions (``topics``), and the values ``fraction``
-    and ``still`` of the block `measure` of the configuration.
+    The settings also have the topics of the predictions (``topics``), and two definitions: that of
+    the transition under a stress boundary (``fraction``) and that of rest (``still``).
     """
     swept_runs = [*runs(settings["sweep"])]
     table = predictions(settings["topics"], swept_runs, settings)

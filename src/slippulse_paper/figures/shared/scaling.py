@@ -95,9 +95,13 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
 def ratio_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, x_column: str, line_column: str
 ) -> Axes:
-    """Add an inset with the plot of `draw_ratio` and a legend to a panel, and return its axes.
+    """Add an inset to a panel that shows measured values divided by the formula, with a legend.
+
+    Return the axes of the inset.
 
     box : place of the inset in the panel
+    quantity : "length" or "time"
+    x_column, line_column : as in `draw_ratio`
     """
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
