@@ -168,7 +168,7 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
         dashes, marker = look_of_level[level]
         shade = colour("damping_ratio", ratio)
         axes.plot(line["springs"], line["speed"], dashes, color=shade)
-        # At stiffer springs, no front is faster than the waves, and the theory has no speed.
+        # The theory has no speed beyond the end of the line.
         if line["speed"].isna().any():
             end = line.dropna(subset="speed").tail(1)
             axes.plot(end["springs"], end["speed"], "x", color=shade)

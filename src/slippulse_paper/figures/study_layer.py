@@ -263,7 +263,7 @@ def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
-    """Mark what the pulse of each point does: whether it is steady, grows, dies, or neither.
+    """Mark for each point what its pulse does (column outcome), such as "steady" or "growing".
 
     The axes are the fracture energy, and the distance sqrt(2/gamma - 1) at which shear waves from
     the top of the layer reach the fault.

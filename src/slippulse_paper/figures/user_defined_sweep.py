@@ -84,13 +84,13 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
 
     levels : the columns with the levels of the pre-stress; left out for tables of pre-stress
     """
-    has_springs = runs["boundary"].iloc[0] == "displacement"
-    columns = ["gamma"] if has_springs else []
+    is_held = runs["boundary"].iloc[0] == "displacement"
+    columns = ["gamma"] if is_held else []
     if "profile" not in runs:
         columns += levels
     columns += ["damping_ratio", "width", "dx"]
     shared = [column for column in columns if runs[column].nunique() == 1]
-    return conditions(held=has_springs, **runs[shared].iloc[0])
+    return conditions(held=is_held, **runs[shared].iloc[0])
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:

@@ -112,6 +112,7 @@ def compare_numbers(
 
     parameters : columns that describe a run
     """
+    # The column allowed has the allowed difference by the uncertainties.
     numbers = _list_numbers(new, old, parameters)
     # A run has one row for each of its numbers.
     is_same_lattice = np.repeat(_is_same_lattice(new, old), len(new.numbers.columns))

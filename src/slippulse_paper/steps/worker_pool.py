@@ -72,7 +72,7 @@ def run_here(job: Job) -> None:
 
     Raises JobFailed with the reason if the job fails.
     """
-    # The job needs the libraries and the environment variables that this module sets.
+    # This import loads the libraries and sets the environment variables that a job needs.
     from . import worker_libraries  # noqa: F401
 
     run_job(job)
