@@ -207,7 +207,7 @@ def draw(table: pd.DataFrame) -> Figure:
     ]
     frame: Look = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
     handles.append(entry("never released: stops the left front", **(square | frame)))
-    legend_below(figure, handles, 4)
+    legend_below(figure, handles, columns=4)
     return figure
 
 

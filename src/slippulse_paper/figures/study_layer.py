@@ -173,9 +173,10 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     speed_axes, width_axes, slip_axes = panels
     for gamma, look in _gamma_looks(pulses).items():
         rows = pulses[pulses["gamma"] == gamma].sort_values("fracture_energy")
-        _draw_quantity(speed_axes, rows, "speed", 1.0, look)
-        _draw_quantity(width_axes, rows, "pulse_width", _crossing_width(gamma), look)
-        _draw_quantity(slip_axes, rows, "pulse_slip", rows["paper_pulse_slip"], look)
+        width_unit, slip_unit = _crossing_width(gamma), rows["paper_pulse_slip"]
+        _draw_quantity(speed_axes, rows, "speed", unit=1.0, look=look)
+        _draw_quantity(width_axes, rows, "pulse_width", unit=width_unit, look=look)
+        _draw_quantity(slip_axes, rows, "pulse_slip", unit=slip_unit, look=look)
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:

@@ -90,7 +90,7 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = [name for name in CHOICE_LOOKS if (table["choice"] == name).any()]
     handles = [entry(marker="o", **CHOICE_LOOKS[name]) for name in shown]
     handles += [entry(name, color=BLACK, **look) for name, look in SOLUTION_MARKERS.items()]
-    style.legend_below(figure, handles, 2)
+    style.legend_below(figure, handles, columns=2)
     return figure
 
 

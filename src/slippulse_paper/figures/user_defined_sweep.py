@@ -135,7 +135,7 @@ def draw(table: pd.DataFrame) -> Figure:
         handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="o", color=GREY, **OPEN_MARKER))
-    legend_below(figure, handles, 5)
+    legend_below(figure, handles, columns=5)
     return figure
 
 

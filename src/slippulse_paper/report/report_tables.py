@@ -229,7 +229,7 @@ def found_list(ledger: Ledger) -> str:
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
-    """Return a table of how many sentences are tested, and how many are not for each reason."""
+    """Return a table of how many sentences are tested, and for each reason how many are not."""
     titles = REASONS | {"all": "all"}
     rows = [(titles[reason], count) for reason, count in coverage(sentences).items()]
     columns = [text_column("sentences", 60), number_column("how many", 15)]
@@ -434,7 +434,7 @@ def _relative_measured_step(row: Mapping, name: str) -> str:
 
 
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
-    """Return a quotation that lists differences from the shipped configuration and verdicts.
+    """Return a block quotation of the differences from the shipped configuration and verdicts.
 
     Returns an empty text if there are none.
 

@@ -35,7 +35,7 @@ class WorkerPool:
 
         ``workers`` is the largest number of workers.
         """
-        # If no process can be started, the first job reports the reason.
+        # Any quick function starts the worker. If that fails, the first job reports the reason.
         with suppress(EOFError, OSError):
             self._submit(workers, os.getpid)
 

@@ -198,7 +198,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         draw_prestress(velocity_axes, box, styled_runs(table), half_length_in_widths=5.0)
         # The exact acceleration has no bound at the front.
         acceleration_axes.set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
-    style.legend_below(figure, legend_entries(table), 6)
+    style.legend_below(figure, legend_entries(table), columns=6)
     return figure
 
 

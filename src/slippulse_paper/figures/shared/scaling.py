@@ -186,14 +186,15 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         axes.set_title(title, loc="center")
         # The runs lie above the line of equality, so that the lower right corner is free.
         box = (0.52, 0.12, 0.26, 0.29)
-        inset = ratio_inset(axes, box, runs_of_insets, quantity, "damping_ratio", level_column)
+        columns = {"x_column": "damping_ratio", "line_column": level_column}
+        inset = ratio_inset(axes, box, runs_of_insets, quantity, **columns)
         _set_axis_of_damping_ratios(inset, ratios)
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
     label = f"exact, ${SYMBOLS[second_column]}$ = {middle:g} (insets)"
     handles.append(entry(label, color=BLACK, linewidth=0.8))
-    style.legend_below(figure, handles, len(handles))
+    style.legend_below(figure, handles, columns=len(handles))
     return figure
 
 
