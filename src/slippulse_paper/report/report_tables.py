@@ -107,7 +107,7 @@ def verdicts(lines: Iterable[Line]) -> str:
     rows = []
     for line in lines:
         links = []
-        # A verdict links to the first claim that has it. What its claims are about follows.
+        # A verdict links to the first claim that has it. The subjects of all such claims follow.
         for claim, subjects in line.verdicts:
             link = f"[{claim.verdict}](../claims.html#{claim.id})"
             links.append(f"{link} {subjects}".strip())
