@@ -9,7 +9,7 @@ from hard_scenes import FAMILIES, VARIANTS, ComparedScene, HardScene, scene
 from tolerances import NUDGED, NUDGED_DOUBLE
 
 from slippulse.model.prestress import Prestress
-from slippulse.theory import part
+from slippulse.theory import Rupture, part
 
 # The first scenes are in every run of the tests, each with one variant; all of them are in the slow
 # tests.
@@ -175,3 +175,15 @@ def test_all_solutions_agree_before_either_has_a_limit(number):
 @pytest.mark.slow
 def test_few_limits_are_removed_by_refinement():
     assert sum(check_variants(scene(number)) for number in range(ALL_SCENES)) <= 0.15 * ALL_SCENES
+
+
+def test_stick_times_that_are_only_rounding_are_refused():
+    """A pre-stress of almost 0 leaves slip velocities that are smaller than rounding errors."""
+    zero, low = -1e-13, -0.92
+    half = [(0.1, 0.4), (1.0, 0.4), (1.5, zero), (3.8, zero), (4.3, low)]
+    points = [(-x, tau) for x, tau in reversed(half)] + [(0.0, 1.0), *half]
+    points[0], points[2] = (-4.8, low), (-2.0, zero)
+    prestress = Prestress(low, low, width=None, points=tuple(points))
+    rupture = Rupture(prestress, 0.0, 0.1, "total", 25.0)
+    with pytest.raises(ValueError, match=r"prestress: stick times that take more than \d+ knots"):
+        rupture.stick_time(1.0)

@@ -157,7 +157,7 @@ LONGER = SWEEP.assign(row_size=SWEEP["row_size"] + 1)
 LATE = sp.Samples([0.1, 3.5], [0.0])
 TOO_LATE = "samples.times: 3.5; allowed: up to the duration of the scene, 0.2"
 LARGEST = "damping_ratio: -1.0; allowed: a finite number and >= 0 and <= 1e+100"
-SLOW = "tau0: 0.3; allowed: > 0.50849, values whose front outr"
+SLOW = "tau0: 0.3; allowed: > 0.50849, so that the front is faster"
 # Further calls: part of the message, the function, and its arguments.
 CALLS = [
     (TOO_LATE, sp.simulate, TINY, LATE),
@@ -196,9 +196,9 @@ CALLS = [
     ("damping_ratio: {}; allowed: finite numbers", theory.prestress_for_speed, 1.2, {}),
     ("speed: 1.0; allowed: a finite number and > 1 and <", theory.prestress_for_speed, 1.0, 0.1),
     (SLOW, theory.lattice_front_speed, 0.3, 1.0, 1.0, 0.1),
-    ("tau0: 0.33; allowed: > 0.336545, values", theory.lattice_front_speed, 0.33, 0.5, 1.0, 3.0),
+    ("tau0: 0.33; allowed: > 0.336545, so that", theory.lattice_front_speed, 0.33, 0.5, 1.0, 3.0),
     ("tau0: 0.5; allowed: > 1", theory.lattice_front_speed, 0.5, 1e300, 1e300),
-    ("tau0: 0.3; allowed: values whose front outruns", theory.continuum_front_speed, 0.3, 2.0, 0.3),
+    ("tau0: 0.3; allowed: a pre-stress at which", theory.continuum_front_speed, 0.3, 2.0, 0.3),
     ("beta: 0.0; allowed", theory.continuum_front_speed, 0.3, 2.0, 0.0),
     ("position: -100; allowed", CRACK.time_at, -100),
     ("fraction: 1.0; allowed", CRACK.transition, 1.0),

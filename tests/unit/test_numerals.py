@@ -59,5 +59,7 @@ def test_texts_for_pages_are_one_paragraph_each_and_show_raw_html():
     html = markup_of(["a <b>x</b> & $\\tau_0$", "(a) two", ""])
     assert html["a <b>x</b> & $\\tau_0$"].startswith("a &lt;b&gt;x&lt;/b&gt; &amp; <math")
     assert html["(a) two"] == "(a) two" and html[""] == ""
-    with pytest.raises(ValueError, match="not one paragraph"):
+    with pytest.raises(ValueError, match="text for a page: '# a heading'; allowed: one paragraph"):
         markup_of(["# a heading"])
+    with pytest.raises(ValueError, match="without a horizontal rule"):
+        markup_of(["* * *", "words"])

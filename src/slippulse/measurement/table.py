@@ -257,8 +257,9 @@ def far_field(run: AnyRun) -> dict[str, float]:
     profile_change : largest change of slip velocity in the frame that moves at the wave speed,
         divided by the early peak velocity
     energy_change : relative change of the sum of kinetic and strain energy
-    strain_left : largest final strain where the pulse entered the far field, divided by the largest
-        final strain anywhere in it
+    strain_left : strain that is left where the pulse entered the far field: the largest strain
+        there at the end of the run, divided by the largest strain anywhere in the far field at that
+        time
 
     All are NaN if nothing slid in the far field at the early time.
     """

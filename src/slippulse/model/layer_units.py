@@ -7,7 +7,7 @@ to SI units and back. Its base class `LayerMaterial` has its parameters and conv
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from numbers import Real
 from os import PathLike
 from pathlib import Path
@@ -392,7 +392,10 @@ class Layer(LayerMaterial):
         run_layer = layer_of(run.attrs)
         if run_layer is None:
             raise ValueError("run: without units; allowed: a run that to_si returned")
-        check_that(run_layer == self, "layer", run_layer, "the layer that converted the run")
+        for field in fields(self):
+            value, allowed = getattr(self, field.name), getattr(run_layer, field.name)
+            allowed_text = f"{allowed!r}, as in the layer that converted the run"
+            check_that(value == allowed, f"layer.{field.name}", value, allowed_text)
         for name in run.variables:
             unit, expected = run[name].attrs.get("units"), UNITS[QUANTITIES[name]]
             check_that(unit == expected, f"run: units of {name}", unit, repr(expected))

@@ -89,8 +89,8 @@ def lattice_front_speed(
     if tau0 <= least_prestress:
         rate = f", rate_strengthening = {rate_strengthening:g}" if alpha_dx else ""
         raise ValueError(
-            f"tau0: {tau0!r}; allowed: > {least_prestress:.6g}, values whose front outruns the"
-            f" waves at gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
+            f"tau0: {tau0!r}; allowed: > {least_prestress:.6g}, so that the front is faster than"
+            f" the waves at gamma = {gamma:g}, dx = {dx:g}, damping_ratio = {damping_ratio:g}{rate}"
         )
     if damping_ratio == alpha_dx == 0.0:
         # The closed form sin(sqrt(g)/(2 tau v)) = sqrt(g (1 - tau^2))/(2 tau), g = gamma dx^2,
@@ -152,8 +152,8 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     # This condition is v > 1.
     if not slowing < tau0 / (1.0 - tau0):
         raise ValueError(
-            f"tau0: {tau0!r}; allowed: values whose front outruns the waves at gamma = {gamma:g},"
-            f" beta = {beta:g}"
+            f"tau0: {tau0!r}; allowed: a pre-stress at which the front is faster than the waves,"
+            f" for gamma = {gamma:g} and beta = {beta:g}"
         )
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + slowing)))
 

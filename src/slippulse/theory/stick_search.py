@@ -109,9 +109,9 @@ class StickSearch:
         sample_count = release.size * (longest / self.step + BATCH_SIZE + waves.shape[1])
         if sample_count > MAX_SAMPLES:
             raise ValueError(
-                f"duration: {self.until:g}, for which the search for stick times evaluates slip"
-                f" velocities at {sample_count:.2g} points; allowed: durations for which it"
-                f" evaluates at most {MAX_SAMPLES:.0e}"
+                f"duration: {self.until:g}, for which the slip velocity must be evaluated at"
+                f" {sample_count:.2g} points to find the stick times; allowed: a duration for which"
+                f" at most {MAX_SAMPLES:.0e} points are needed"
             )
         batch_count = longest // (BATCH_SIZE * self.step) + 1
         steps = self.step * np.arange(1, BATCH_SIZE * batch_count + 1)

@@ -65,6 +65,9 @@ PIECES_PER_CUT = 8
 # An interval at least this long, in units of JUMP_TOLERANCE times the length of the part, has at
 # most one jump.
 SINGLE_JUMP_LENGTH = 1e3
+# The largest number of knots. Stick times of usual scenes take about 2000 knots at most. Where the
+# pre-stress is almost 0, stick times may be so irregular that refinement would go on for hours.
+MAX_KNOTS = 30_000
 # The most steps of Newton's method for a stick time.
 MAX_NEWTON_STEPS = 12
 # It fails if it moves farther from its start than this fraction of the interval length.
@@ -168,6 +171,12 @@ class PartWithEdge(Part):
         knots = knots.joined(self._make_knots(x, stick))
         while left_ends.size:
             knots, left_ends = self._refine(knots, left_ends)
+            if knots.x.size > MAX_KNOTS:
+                raise ValueError(
+                    f"prestress: stick times that take more than {MAX_KNOTS} knots, since some slip"
+                    " velocities are as small as rounding errors;"
+                    " allowed: pre-stress with more regular stick times"
+                )
         return knots
 
     def _make_knots(self, x: np.ndarray, stick: np.ndarray) -> Knots:

@@ -149,7 +149,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 def transitions(evidence: Evidence) -> list[Runs]:
     """Return runs under a displacement boundary, for both criteria of T_trans.
 
-    Exact solutions are measured at the first stick only, and lattices also at the printed slip.
+    Exact solutions are measured at the first stick only. Lattices are also measured at the slip by
+    which the paper defines T_trans.
     """
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
@@ -294,14 +295,14 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge an estimate of the transition under a displacement boundary, by both criteria.
 
-    The transition is at the first stick, or when the slip reaches the printed value. Not all runs
-    reach this value, so the claim also shows how many do.
+    The transition is at the first stick, or when the slip at x = 0 reaches the value by which the
+    paper defines T_trans. Not all runs reach this value, so the claim also shows how many do.
     """
     combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
-    # Count the runs that reach the printed slip.
+    # Count the runs that reach the slip by which the paper defines T_trans.
     runs = evidence.finest("scaling_displacement")
     at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
-    # The ratio is NaN if a run does not reach the printed slip.
+    # The ratio is NaN if a run does not reach this slip.
     ratio = ratios(at_printed_slip, quantity, f"estimated_{quantity}")
     is_within_tolerance = (ratio - 1.0).abs() <= evidence.tolerance(id)
     further = {

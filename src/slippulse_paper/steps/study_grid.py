@@ -27,7 +27,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     name, sweeps = settings["simulation"], settings["sweeps"]
     coarser_tables = {}
     for factor, sweep in sorted(sweeps.items()):
-        sys.stderr.write(f"  {name}: {factor:g} times the spacing\n")
+        sys.stderr.write(f"  {name}: solving on a lattice with {factor:g} times the spacing\n")
         coarser_tables[factor] = _run_and_measure(sweep, settings)
     # The sweeps differ only in their spacing.
     any_sweep = next(iter(sweeps.values()))

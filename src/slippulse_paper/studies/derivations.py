@@ -173,7 +173,7 @@ def front_functions() -> NumberFunctions:
     """Return two counts as functions: steady fronts followed block by block, and admissible ones.
 
     A steady front is admissible if no block ahead of it reaches the threshold before its release,
-    and no block behind it comes to rest at once.
+    and the block released last slides until the next release.
     """
     parameters = product(FOLLOWED_SPEEDS, FOLLOWED_DAMPING_RATIOS, FOLLOWED_STIFFNESSES, RELEASES)
     fronts = [steady_front(*values) for values in parameters]

@@ -24,8 +24,6 @@ DISABLED_EXTENSIONS = """
     fancy_lists latex_macros inline_notes footnotes citations
 """
 PAGE_TEXT = "-".join(["markdown", *DISABLED_EXTENSIONS.split()])
-# The text of an exception.
-NOT_ONE_PARAGRAPH = "a text for a page is not one paragraph of Markdown"
 # A link has an address and a text, and a picture may have an alternative text.
 LINK = re.compile(r'<a href="([^"]*)"[^>]*>(.*?)</a>', re.DOTALL)
 IMAGE = re.compile(r'<img [^>]*?alt="([^"]*)"[^>]*>|<img [^>]*>')
@@ -69,15 +67,24 @@ def markup_of(texts: Iterable[str]) -> dict[str, Markup]:
     html = IMAGE.sub(_alternative_text, html)
     parts = [part.strip() for part in html.split("<hr />")]
     if len(parts) != len(texts):
-        raise ValueError(NOT_ONE_PARAGRAPH)
-    paragraphs = [Markup(_paragraph_content(part)) for part in parts]
-    return {"": Markup(), **dict(zip(texts, paragraphs, strict=True))}
+        raise ValueError(
+            f"texts for a page: {texts}; allowed: each text is one paragraph of Markdown, without a"
+            " horizontal rule"
+        )
+    paragraphs = {
+        text: Markup(_paragraph_content(part, text))
+        for text, part in zip(texts, parts, strict=True)
+    }
+    return {"": Markup(), **paragraphs}
 
 
-def _paragraph_content(html: str) -> str:
-    """Return the content of an HTML paragraph, or raise ValueError if the HTML is not one."""
+def _paragraph_content(html: str, text: str) -> str:
+    """Return the content of the HTML paragraph that was made from a text.
+
+    Raises ValueError, with the text in the message, if the HTML is not a paragraph.
+    """
     if not (html.startswith("<p>") and html.endswith("</p>")):
-        raise ValueError(NOT_ONE_PARAGRAPH)
+        raise ValueError(f"text for a page: {text!r}; allowed: one paragraph of Markdown")
     return html.removeprefix("<p>").removesuffix("</p>")
 
 
