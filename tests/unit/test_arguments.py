@@ -183,7 +183,11 @@ CALLS = [
     ("allowed: numbers of blocks that, from row_start on", sp.point, LONGER, 0),
     ("allowed: numbers of blocks that, from row_start on", sp.point, SWEEP.drop_vars("x"), 0),
     ("run: a sweep; allowed: one run of the sweep, such as point(sweep, 0)", sp.plot, SWEEP),
-    ("run: a sweep; allowed: one run of the sweep", sp.plot, sp.as_grid(SWEEP.isel(point=[0]), ["left"])),
+    (
+        "run: a sweep; allowed: one run of the sweep",
+        sp.plot,
+        sp.as_grid(SWEEP.isel(point=[0]), ["left"]),
+    ),
     ("run: without slip; allowed: a run with these data; a sweep records them if", sp.plot, RUN),
     ("run: int; allowed: a Dataset that simulate returned", sp.plot, 3),
     ("attributes: 3; allowed: a mapping", sp.Scene.from_attributes, 3),
