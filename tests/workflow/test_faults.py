@@ -50,7 +50,9 @@ def test_surroundings_do_not_change_a_byte_and_it_can_be_started_from_anywhere(t
 @pytest.mark.parametrize(("name", "load"), [("one.csv", load_table), ("one.nc", load_dataset)])
 def test_a_result_that_cannot_be_read_is_named(tmp_path, name, load):
     (tmp_path / name).write_text('a,b\n1,2,3\n"4', encoding="utf-8")
-    with pytest.raises(UnreadableFile, match=rf"{name}: cannot be read .* delete it and run again"):
+    with pytest.raises(
+        UnreadableFile, match=rf"{name}: cannot be read .* delete the file and run again"
+    ):
         load(tmp_path / name)
 
 

@@ -248,7 +248,7 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
     positions, values = _netcdf_numbers(data, x_name), _netcdf_numbers(data, tau_name)
     if len(positions) != len(values):
         sizes = f"{len(positions)} values of {x_name}, {len(values)} of {tau_name}"
-        raise StressFileError(f"{sizes}; allowed: the same number of both")
+        raise StressFileError(f"{sizes}; allowed: the same number of values of both")
     _check_rows(range(1, len(values) + 1), positions)
     units = [str(data[name].attrs.get("units", "")) for name in (x_name, tau_name)]
     return StressTable(positions, values, units[0], units[1])

@@ -73,7 +73,7 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     further = {f"ruptures: {regime}": float(count) for regime, count in counts.items()}
     further["runs left out, because blocks would slide backwards"] = float(slides_back.sum())
     stopped = len(other_laws) - len(ruptures)
-    further["runs left out, because fracture energy stops the rupture"] = float(stopped)
+    further["runs left out, because the fracture energy stops the rupture"] = float(stopped)
     # The caveat is that only some friction laws were tested.
     return Qualitative(decided=regimes != "crack", condition=True, further=further)
 

@@ -415,8 +415,8 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     for outcome, count in points["outcome"].value_counts().items():
         further[f"points that are {outcome}"] = float(count)
     tough_and_dying = (tough["outcome"] == "dying").sum()
-    further["dying points with more fracture energy than the layer can release"] = float(
-        tough_and_dying
+    further["points where the pulse dies, with more fracture energy than the layer can release"] = (
+        float(tough_and_dying)
     )
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]

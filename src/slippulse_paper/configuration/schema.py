@@ -320,7 +320,7 @@ class Duration(Block):
         "the duration in units of pi/sqrt(gamma); only with `boundary: displacement`", None
     )
     balance_distances: Positive | None = key(
-        "the duration in units of the balance distance |x_minus|; only if the left"
+        "the duration in units of the balance distance; only if the left"
         " level is < 0 and the right level is 0",
         None,
     )
@@ -434,7 +434,7 @@ class Simulation(PhysicsOfSweep):
         "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
     beyond: Beyond | None = key(
-        "second level of the pre-stress, beyond a position on one side",
+        "second level that the pre-stress has beyond a position on one side of x = 0",
         None,
     )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
@@ -721,7 +721,7 @@ class Model(Block):
 class Measure(Block):
     fraction: Fraction = key(
         "if the stress is held, T_trans is the time at which the left front has covered"
-        " this fraction of the balance distance |x_minus|"
+        " this fraction of the balance distance"
     )
     front_window: float = key(
         "fraction of the front's path, at its end, over which the front speed is measured",
@@ -817,7 +817,7 @@ class Claim(Block):
 class Reading(Block):
     simulation: str = key("simulation whose run is compared with the reading")
     quantity: str = key("measured number: a column of the tables in results/measurements")
-    statement: Statement = key("description of the reading (figure)", min_length=1)
+    statement: Statement = key("description of the number that was read off (figure)", min_length=1)
     value: float = key("the number that was read off (figure)")
     reading_error: Positive = key("uncertainty of the reading, from the pixel size")
     shared_error: NonNegative = key(
