@@ -127,7 +127,7 @@ def test_a_result_edited_by_hand_fails_the_job_that_reads_it(job):
     run_job(second)
     write_text("point\n5\n", "results/b.csv")
     with pytest.raises(
-        JobFailed, match=r"\Aresults/b.csv: changed since its job wrote it; delete it"
+        JobFailed, match=r"\Aresults/b.csv: changed since its job wrote it; delete the file"
     ):
         run_job(second)
 
