@@ -115,9 +115,9 @@ def verdicts(lines: Iterable[Line]) -> str:
             links.append(f"{link} {subjects}".strip())
         rows.append((line.topic, "; ".join(links), line.text))
     columns = [
-        text_column("what the paper says", 28),
-        text_column("verdict", 16),
-        text_column("what was found", 56),
+        text_column("what the paper says", 22),
+        text_column("verdict", 26),
+        text_column("what was found", 52),
     ]
     return table(columns, rows)
 
