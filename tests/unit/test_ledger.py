@@ -151,7 +151,7 @@ def test_the_last_release_of_a_lattice_decides_nothing_and_is_reported(over_all)
     last = [estimated(*known, fraction=LAST_RELEASE_FRACTION) for known in KNOWN_LENGTHS]
     claim = over_all(last)
     assert claim["verdict"] == DEPENDS and claim["choice"] == "" and "depends" not in claim["why"]
-    reported = "For these combinations the deviation is 14 % to 24 %"
+    reported = "The deviation at the last release is 14 % to 24 %"
     assert reported in claim["why"] and "last release" not in over_all(LENGTHS)["why"]
 
 
