@@ -101,11 +101,11 @@ def is_unknown(target: str) -> bool:
     return "/" not in target and not re.search(rf"^rule {re.escape(target)}:", rules, re.MULTILINE)
 
 
-def clean_up_after_kill() -> TextIO:
-    """Remove the unfinished files of a killed run. Exit if another run uses this folder.
+def lock_folder_and_clean_up() -> TextIO:
+    """Lock this folder for the run, and remove the unfinished files of a killed run.
 
-    There are two locks. The first one is returned, and make holds it until its run ends. The second
-    one is released here, because the Snakemake that make starts takes it.
+    Returns the lock of make, which make holds until its run ends. The lock of Snakemake is released
+    here, because the Snakemake that make starts takes it. Exits if another run holds a lock.
     """
     from slippulse.data.files import UNFINISHED_MARK
     from slippulse_paper.records.lock import take
@@ -188,6 +188,7 @@ def closing_text(targets: list[str], make_options: Mapping[str, str]) -> str:
     makes_everything = config.presets[config.preset].whole
     if targets in ([], ["all"]) and not makes_everything:
         return "Open results/figures; TARGET=everything also makes studies, claims and report"
+    # With these targets, or without targets, the run makes the page with all results.
     has_index = {*targets} <= {"all", "everything", "results/index.html"}
     text = ""
     if has_index or any(target.startswith("results/claims.") for target in targets):
@@ -237,7 +238,7 @@ class Run:
         # A shell waits for the end of its input, which is a pipe from this process. If this process
         # is killed, the system closes the pipe, and the shell kills the process group.
         end_group = f"read _; kill -KILL -{self.process.pid}"
-        self.guard = subprocess.Popen(
+        self.waiting_shell = subprocess.Popen(
             ["sh", "-c", end_group], stdin=subprocess.PIPE, start_new_session=True
         )
 
@@ -249,7 +250,8 @@ class Run:
     def wait(self) -> int:
         """Wait for Snakemake, end all other processes of the run, and return the exit code."""
         code = self.process.wait()
-        self.guard.kill()
+        # This shell would end the run if this process were killed. It is no longer needed.
+        self.waiting_shell.kill()
         self.end()
         # A negative code is a signal. Shells report signal N as 128 + N.
         return code if code >= 0 else 128 - code
@@ -281,7 +283,7 @@ def replicate(make_options: Mapping[str, str]) -> int:
         line = "To compare these results with the new ones, stop now, copy them, and start again: "
         print(f"{line}cp -r {RESULTS} {KEPT_RESULTS} (docs/compare.md)", file=sys.stderr)
     # Run Snakemake.
-    lock = clean_up_after_kill()
+    lock = lock_folder_and_clean_up()
     cores = ["--cores", make_options.get("CORES") or "2"]
     options += options_for_changed_results(options, targets)
     run = Run([*cores, *options, "--", *targets])
@@ -391,7 +393,7 @@ def outdated_files(summary: str) -> Iterable[tuple[str, str]]:
 def files_without_job(known_files: set[str]) -> set[str]:
     """Return the files in the folder of results that no job of this workflow has made.
 
-    known_files : files that are left out, since they have a record or another problem
+    known_files : files that are left out: those with a record, and those that are outdated
     """
     from slippulse_paper.records.job_records import made_without_step
 

@@ -7,8 +7,10 @@ import pytest
 from scipy.signal import lfilter
 
 import slippulse as sp
+from slippulse.data.points import Recorded
 from slippulse.theory.barrier import barrier_depth
 from slippulse_paper.studies import rough_theory as theory
+from slippulse_paper.studies.rough_prestress import CELL_MIDDLES, START, end_state
 from slippulse_paper.studies.survival_statistics import (
     Fate,
     death_rate,
@@ -158,3 +160,18 @@ def test_survival_under_held_stress_has_the_exponent_of_a_random_walk(ensembles)
 @pytest.fixture(scope="module")
 def ensembles(draw):
     return draw("study_rough_prestress").table
+
+
+@pytest.mark.parametrize(("reach", "stick", "is_crack"), [(0.9, 50.0, False), (9.0, np.nan, True)])
+def test_a_block_that_was_never_released_does_not_slide(reach, stick, is_crack):
+    """It has no stick time, like a block that still slides."""
+    x = np.linspace(-20.0, 20.0, 401)
+    is_released = np.abs(x) < reach * START
+    arrays = {
+        "x": x,
+        "release_time": np.where(is_released, np.abs(x), np.nan),
+        "stick_time": np.where(is_released, stick, np.nan),
+        "slip_velocity": np.zeros(x.size),
+    }
+    integral = np.cumsum(np.exp(-0.5 * CELL_MIDDLES**2) - 0.3)
+    assert end_state(Recorded(arrays, {"end_time": 100.0}), integral)["is_crack"] == is_crack

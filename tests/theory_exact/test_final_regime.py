@@ -146,6 +146,13 @@ def test_a_pulse_grows_by_half_of_the_prestress_on_its_way():
         assert late - early == pytest.approx(0.5 * level * np.diff(times)[0], abs=3e-4)
 
 
+def test_the_regime_is_undecided_if_a_barrier_may_stop_the_pulse():
+    for barrier, expected in ((0.1, "pulse, one-way, steady"), (-0.9, UNDECIDED)):
+        profile = Prestress(-0.6, 0.0, steps=((30.0, 0.0), (15.0, barrier)))
+        run = Run("stress", profile, 0.0, 1.0, DAMPING_RATIO, "total", {})
+        assert predictions([run], {"still": STILL_FRACTION}).squeeze() == expected
+
+
 def test_every_answer_is_a_regime():
     levels = (-0.9, -0.02, 0.0, 0.02, 0.9)
     answers = {regime(*scene) for scene in product(levels, levels, (0.0, 0.65))}

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -27,7 +28,9 @@ from slippulse_paper.claims.paper_claims import (
 from slippulse_paper.claims.pulse_claims import growth_signs
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import (
+    front_arrest_position,
     judge_rise_with_prestress,
+    transition_diverges,
     transition_time_underestimated,
 )
 
@@ -324,6 +327,24 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
 
 
+@pytest.mark.parametrize("judge", [front_arrest_position, transition_diverges])
+def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
+    columns = ["left", "width", "gamma", "release", "damping_ratio", "factor"]
+    columns += ["last_release_distance", "balance_distance", "transition_time", "transition_length"]
+
+    no_runs = pd.DataFrame(columns=columns, dtype=float)
+    flagged = SimpleNamespace(
+        entries={"claim": {"tolerance_exponent": 0.1}},
+        tables={"open_choices": pd.DataFrame({"damping_ratio": [0.1]})},
+        tolerance=lambda id: 0.1,
+        lattices=lambda *sweeps, where="": [no_runs] * 3,
+    )
+    flagged.approximate = partial(Evidence.approximate, flagged)
+    claim = judge(flagged, "claim")
+    assert claim.verdict() == NONE
+    assert claim.sentence_values().get("holding", []) == []
+
+
 def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_zero():
     """In the first pair of runs the second pulse grows more than the first, in the other less."""
     runs = pd.DataFrame({"width": [1.0, 1.0, 2.0, 2.0], "beyond": [0.0, 0.1, 0.0, 0.1]})
@@ -351,6 +372,9 @@ def test_a_sweep_may_have_several_release_rules():
 
     numbers = length_changes_by_damping(Sweeps())
     assert (numbers["stress_change"], numbers["stress_scenes"]) == (2.0, 4.0)
+    # Without undamped runs there is nothing to compare with.
+    Sweeps.finest = lambda self, name: runs[runs["damping_ratio"] > 0.0]
+    assert length_changes_by_damping(Sweeps()) == {}
     assert judge_rise_with_prestress(runs, "transition_length").decided == [True] * 4
 
 

@@ -204,11 +204,24 @@ def moving(speed: float, growth: float = 0.0, left: float = 0.0) -> xr.Dataset:
         # A pulse that never comes far has no numbers; a slower one lags half a length.
         (moving(0.0), {"profile_change": np.nan}),
         (moving(0.95), {"profile_change": 0.367}),
+        # From the early time to the end waves run farther than the samples reach.
+        (
+            moving(1.0).sel(sample_position=slice(-5.0, 24.0)).isel(sample_time=[0, 1, 3]),
+            {"profile_change": np.nan},
+        ),
+        # No position is sampled where the pulse enters the far field, 6 to 7 widths from x = 0.
+        (moving(1.0).sel(sample_position=slice(8.0, None)), {"strain_left": np.nan}),
     ],
 )
 def test_changes_of_the_far_pulse_are_measured(run, expected):
     numbers = {quantity: far_field(run)[quantity] for quantity in expected}
     assert numbers == pytest.approx(expected, rel=0.03, abs=1e-3, nan_ok=True)
+
+
+def test_order_of_sampled_positions_does_not_matter():
+    run = moving(0.95, left=0.1)
+    repeated = run.isel(sample_position=[*range(8000, -1, -1), 4000])
+    assert far_field(repeated) == far_field(run)
 
 
 @pytest.mark.parametrize(

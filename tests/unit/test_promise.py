@@ -25,6 +25,9 @@ COMMON |= {"steps_and_bumps": '{"steps": [], "bumps": []}', "end_time": 20.0}
 COMMON |= {"front_intercept_left": 0.0, "front_intercept_right": 0.0, "front_speed_left": 1.2}
 BARRIER = {"steps_and_bumps": '{"steps": [], "bumps": [[10.0, -0.6, 1.0]]}'}
 FAR_BARRIER = {"steps_and_bumps": '{"steps": [], "bumps": [[30.0, -0.6, 1.0]]}'}
+# A table with so many points that the row has only their digest. Left of x = 0 no front ran.
+ONLY_RIGHT_FRONT = {"lowest_prestress_left": math.nan, "lowest_prestress_right": 0.4}
+ONLY_RIGHT_FRONT |= {"steps_and_bumps": '{"steps": [], "bumps": [], "points": "99 points, 1a2b"}'}
 PULSE = COMMON | {"boundary": "displacement", "left": 0.5, "right": 0.5, "beyond": 0.5}
 PULSE |= {"front_speed_left": 1.2, "front_speed_right": 1.2, "transition_time": 3.0}
 PULSE |= {"pulse_state": "steady", "pulse_width": 2.0, "pulse_acceleration": 1.0}
@@ -61,6 +64,7 @@ COVERS = [
     (PULSE, BARRIER, ["front_speed_left"], ["front_speed_right", "transition_time", "pulse_width"]),
     (PULSE, FAR_BARRIER, ["front_speed_right", "transition_time", "pulse_width"], []),
     (PULSE, {"front_speed_left": math.nan}, ["front_speed_right"], ["transition_time"]),
+    (PULSE, ONLY_RIGHT_FRONT, ["front_speed_right", "pulse_width"], ["front_speed_left"]),
     (CRACK, {}, ["transition_time", "largest_velocity"], ["front_speed_right"]),
     (CRACK, {"transition_state": "stalled"}, [], ["transition_time"]),
     (CRACK, {"damping_ratio": 0.0}, ["largest_velocity"], ["transition_time"]),

@@ -115,6 +115,11 @@ def test_a_sweep_can_be_read_from_a_file(runs, tmp_path):
     again = sp.open_sweep(tmp_path / "sweep.nc")
     xr.testing.assert_identical(again, runs)
     assert again.sel(gamma=0.3).sizes["point"] == 2
+    selected = runs.sel(gamma=0.3)
+    selected.to_netcdf(tmp_path / "selected.nc", engine="h5netcdf")
+    again = sp.open_sweep(tmp_path / "selected.nc")
+    xr.testing.assert_identical(again, selected)
+    assert sp.point(again, 1).equals(alone(0.3, 0.5))
     alone(0.3, 0.5).to_netcdf(tmp_path / "run.nc", engine="h5netcdf")
     with pytest.raises(ValueError, match="allowed: the data file of a sweep"):
         sp.open_sweep(tmp_path / "run.nc")

@@ -53,3 +53,16 @@ def test_a_missing_transition_has_a_reason(reason, boundary, levels, values):
     numbers = measured(boundary, sp.Prestress(*levels), 1.0, dx=0.05, **values)
     assert math.isnan(numbers["transition_time"]) and math.isnan(numbers["transition_length"])
     assert numbers["transition_reason"].startswith(reason)
+
+
+@pytest.mark.parametrize(
+    "additions", [{"steps": ((3.0, -0.2),)}, {"bumps": ((4.0, -0.5, 3.0),)}], ids=str
+)
+def test_reason_names_steps_and_balance_position(additions):
+    """The levels are those of the paper's transition, but it is not defined with these additions.
+
+    With the bump, the integral of the pre-stress is negative, so that there is no balance position.
+    """
+    prestress = sp.Prestress(-0.05, 0.0, **additions)
+    reason = measured("stress", prestress, 1.0, dx=0.05)["transition_reason"]
+    assert reason.endswith("without steps, and with a balance position")

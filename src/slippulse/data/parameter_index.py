@@ -174,14 +174,14 @@ def independent_parameters(values: Mapping[Any, np.ndarray]) -> list[str]:
     # Number of different combinations of the kept parameters.
     count = 1
     for name in candidates:
-        count_with_name = len(combinations(values, [*kept_names, name]))
+        count_with_name = len(distinct_combinations(values, [*kept_names, name]))
         if count_with_name > count:
             kept_names.append(name)
             count = count_with_name
     return kept_names
 
 
-def combinations(values: Mapping[Any, np.ndarray], names: Sequence[str]) -> np.ndarray:
+def distinct_combinations(values: Mapping[Any, np.ndarray], names: Sequence[str]) -> np.ndarray:
     """Return the different combinations of some parameters that occur among the runs.
 
     Each row is one combination. In place of a value it has the number of the value in the sorted

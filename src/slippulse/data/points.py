@@ -46,12 +46,13 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     Raises ValueError if the numbers of blocks of the runs do not fit the arrays.
     """
     sweep = over_points(sweep)
-    # Single numbers of each run. Three of them only describe the sweep, and are taken out.
+    # Single numbers of each run. The three that only describe the sweep are taken out.
     numbers = _arrays_along(sweep, "point")
     numbers.pop("point", None)
     sizes = numbers.pop("row_size", np.zeros(sweep.sizes["point"], int))
     recorded_starts = numbers.pop("row_start", None)
     block_arrays = _arrays_along(sweep, "block")
+    # The times, positions and values of samples, in arrays whose first axis is the run.
     sample_arrays = {
         str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep
     }
@@ -84,11 +85,12 @@ def _starts_of_runs(
         # Each run begins where the previous one ends.
         starts = np.cumsum(sizes) - sizes
         is_consistent = np.all(sizes >= 0) and np.sum(sizes) == number_of_blocks
+        allowed = "numbers of blocks whose sum is the length of x"
     else:
         # If runs were selected from a sweep, the arrays still contain the blocks of all its runs.
         starts = recorded_starts
         is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
-    allowed = "numbers of blocks whose sum is the length of x"
+        allowed = "numbers of blocks that, from row_start on, fit into x"
     check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
     return starts
 

@@ -48,7 +48,10 @@ def _dimensions_of_variables(
     A dimension is an item of the file. Its attribute REFERENCE_LIST lists the variables that have
     the dimension, each with the number of the axis. A variable that is in no such list is a
     coordinate: its dimension has its own name.
+
+    items, attributes : all variables and dimensions of the file, and their attributes, by name
     """
+    # The keys are items, because REFERENCE_LIST refers to items, not to names.
     dimensions = {item: [name] * item.rank for name, item in items.items()}
     for dimension, attributes_of_dimension in attributes.items():
         for reference, axis in attributes_of_dimension.get("REFERENCE_LIST", ()):

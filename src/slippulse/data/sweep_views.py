@@ -13,7 +13,7 @@ import xarray as xr
 
 from ..model.checks import check_that
 from ..model.scene import ATTRIBUTES
-from .parameter_index import ParameterIndex, combinations, independent_parameters
+from .parameter_index import ParameterIndex, distinct_combinations, independent_parameters
 from .variables import VARIABLES
 
 # Attribute of a sweep that names the parameters of which `sweep` was given lists.
@@ -25,19 +25,22 @@ def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     """Return a sweep with its parameters as coordinates along the dimension ``point``.
 
     The result also has the coordinate ``row_start``, the number of the first block of each run. It
-    is needed to find the blocks of a run after a selection of runs.
+    is needed to find the blocks of a run after a selection of runs. A selection that was written to
+    a file by ``to_netcdf`` already has it, and the numbers ``point`` of its runs.
     """
-    attributes = {"units": "1", "long_name": VARIABLES["point"]}
-    sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), attributes))
+    if "point" not in sweep.variables:
+        attributes = {"units": "1", "long_name": VARIABLES["point"]}
+        sweep = sweep.assign_coords(point=("point", np.arange(sweep.sizes["point"]), attributes))
     parameters = [name for name in ATTRIBUTES if name in sweep]
     coordinates = list(parameters)
     if "row_size" in sweep:
-        sizes = sweep["row_size"].values
-        # Each run begins where the previous one ends.
-        starts = np.cumsum(sizes) - sizes
-        attributes = {"units": "1", "long_name": VARIABLES["row_start"]}
-        sweep = sweep.assign_coords(row_start=("point", starts, attributes))
-        coordinates.append("row_size")
+        if "row_start" not in sweep.variables:
+            sizes = sweep["row_size"].values
+            # Each run begins where the previous one ends.
+            starts = np.cumsum(sizes) - sizes
+            attributes = {"units": "1", "long_name": VARIABLES["row_start"]}
+            sweep = sweep.assign_coords(row_start=("point", starts, attributes))
+        coordinates += ["row_size", "row_start"]
     # One index over all parameters takes the place of the index that xarray makes of `point`.
     sweep = sweep.drop_indexes("point").set_coords(coordinates)
     return sweep.set_xindex(["point", *parameters], ParameterIndex)
@@ -73,8 +76,7 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     """
     data = xr.load_dataset(path)
     check_that(is_sweep(data), "path", str(path), "the data file of a sweep, such as results/data")
-    # A file that was written by ``to_netcdf`` contains variables that `with_parameters` adds again.
-    return with_parameters(data.drop_vars(["row_start", "point"], errors="ignore"))
+    return with_parameters(data)
 
 
 def is_sweep(data: object) -> bool:
@@ -151,11 +153,12 @@ def _default_axes(sweep: xr.Dataset) -> list[str]:
 def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
     """Raise ValueError unless there is exactly one run for each combination of the axes' values."""
     values = {name: sweep[name].values for name in axes}
-    needed = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
-    runs = sweep.sizes["point"]
-    is_complete = len(combinations(values, axes)) == needed == runs
-    allowed = f"{needed}, one for each combination of {', '.join(axes)}"
-    check_that(is_complete, "number of runs", runs, allowed)
+    needed_count = math.prod(len(np.unique(values_of_axis)) for values_of_axis in values.values())
+    distinct_count = len(distinct_combinations(values, axes))
+    run_count = sweep.sizes["point"]
+    is_complete = distinct_count == needed_count and run_count == needed_count
+    allowed = f"{needed_count}, one for each combination of {', '.join(axes)}"
+    check_that(is_complete, "number of runs", run_count, allowed)
 
 
 def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:

@@ -54,6 +54,8 @@ def _one_row_per_ratio(profile: pd.DataFrame) -> pd.DataFrame:
     divided by the reading error. A second column, whose name begins with INDEPENDENT_PREFIX, has a
     combination of pulls that is not correlated with those of the other readings (see
     `independent_combinations`).
+
+    profile : table of the fits, with one row for each studied damping ratio and reading
     """
     pulls = profile.pivot(index="damping_ratio", columns="reading", values="pull")
     independent = profile.pivot(

@@ -86,13 +86,14 @@ def fast_sides(run: Mapping) -> set[str]:
     """Return the sides on which the front has crossed only pre-stress of at least MIN_PRESTRESS.
 
     If the pre-stress is a table of points, its lowest crossed value is one of the measured numbers.
-    Otherwise, the profile is evaluated up to the end of the path. A side whose front has an unknown
-    path is not among the returned sides.
+    Otherwise, the profile is evaluated up to the end of the path. A side on which no front ran, or
+    whose front has an unknown path, is not among the returned sides.
     """
     if "lowest_prestress_left" in run:
         lowest = {side: run[f"lowest_prestress_{side}"] for side in ("left", "right")}
-        # In a sweep that also has other profiles than tables, these numbers of the others are NaN.
-        if all(map(math.isfinite, lowest.values())):
+        # One of them is NaN if no front ran on this side. Both are NaN if the run has no table, but
+        # other runs of the sweep have one.
+        if any(map(math.isfinite, lowest.values())):
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
     sides = set()
     for side, sign in (("left", -1.0), ("right", 1.0)):

@@ -154,9 +154,10 @@ def crossed_prestress(run: AnyRun, window: float) -> dict[str, float]:
 def measure_transition(run: AnyRun, fraction: float) -> dict:
     """Return the numbers of the transition by name; none if the run has no defined transition.
 
-    Under a displacement boundary, the paper defines a transition for equal positive levels. For a
-    table, it is measured for different positive levels, too. Under a stress boundary, the paper
-    defines it for a negative level on the left and the level 0 on the right, without steps.
+    Under a displacement boundary, the paper defines a transition for equal positive levels. If the
+    pre-stress is a table of points, it is measured for different positive levels, too. Under a
+    stress boundary, the paper defines it for a negative level on the left and the level 0 on the
+    right, without steps.
 
     fraction : see `transition_stress`
     """
@@ -261,13 +262,18 @@ def far_field(run: AnyRun) -> dict[str, float]:
         there at the end of the run, divided by the largest strain anywhere in the far field at that
         time
 
-    All are NaN if nothing slid in the far field at the early time.
+    All are NaN if nothing slid in the far field at the early time. profile_change is NaN if the
+    sampled far field is shorter than the distance that waves run between the two times.
+    strain_left is NaN if no position near the entry is sampled, or if the final strain is 0.
     """
     far_start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
-    times, x = np.asarray(run["sample_time"]), np.asarray(run["sample_position"])
+    times = np.asarray(run["sample_time"])
+    # Sampled positions may be in any order, and may repeat.
+    x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)
     # Index of the early time. The index of the final time is -1.
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
-    velocity, slip = np.asarray(run["sample_velocity"]), np.asarray(run["sample_slip"])
+    velocity = np.asarray(run["sample_velocity"])[:, order]
+    slip = np.asarray(run["sample_slip"])[:, order]
     is_far = x >= far_start
     early_peak = np.max(velocity[early][is_far], initial=0.0)
     if np.count_nonzero(is_far) < MIN_FAR_SAMPLES or not early_peak > 0.0:
@@ -285,10 +291,15 @@ def far_field(run: AnyRun) -> dict[str, float]:
     travelled = float(times[-1] - times[early])
     is_compared = is_far & (x + travelled <= x[-1])
     final_velocity = np.interp(x[is_compared] + travelled, x, velocity[-1])
-    largest_change = np.max(np.abs(final_velocity - velocity[early][is_compared]))
+    changes = np.abs(final_velocity - velocity[early][is_compared])
+    largest_change = np.max(changes) if changes.size else np.nan
     final_strain = np.abs(strain[-1])
+    entry_strain, largest_strain = final_strain[far_x <= entry_end], np.max(final_strain)
+    strain_left = np.nan
+    if entry_strain.size and largest_strain > 0.0:
+        strain_left = float(np.max(entry_strain) / largest_strain)
     return {
         "profile_change": float(largest_change / early_peak),
         "energy_change": float(final_energy / early_energy - 1.0),
-        "strain_left": float(np.max(final_strain[far_x <= entry_end]) / np.max(final_strain)),
+        "strain_left": strain_left,
     }

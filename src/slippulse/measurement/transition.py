@@ -26,8 +26,8 @@ def transition_displacement(run: AnyRun) -> dict[str, float]:
     The first definition is the first stick. The second definition is printed in the paper: the slip
     at x = 0 reaches 2 tau/gamma. The paper leaves open which pre-stress tau this is. Names that end
     in "background" use the level far from the nucleation, and are NaN if the levels on the left and
-    on the right differ. Names that end in "nucleation" use the pre-stress at x = 0. All numbers of
-    the second definition are NaN if the equation of motion has an extra term.
+    on the right differ. Names that end in "nucleation" use the peak of the Gaussian at x = 0. All
+    numbers of the second definition are NaN if the equation of motion has an extra term.
     """
     transition = first_stick(run)
     has_one_level = run.attrs["left"] == run.attrs["right"]
@@ -81,7 +81,8 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     They do not converge, because in the continuum the front never stops.
 
     The transition state is "resolved", "stalled" (the lattice held up the front), or "not reached"
-    (time and length are NaN).
+    (time and length are NaN). transition_longest_wait is the longest time between two successive
+    releases on the way there, as a fraction of the transition time.
     """
     balance_distance = abs(prestress_balance_position(prestress_from(run.attrs)))
     time, longest_wait = arrival(run, fraction * balance_distance, "left")

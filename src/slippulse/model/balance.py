@@ -32,6 +32,7 @@ def integral(prestress: Prestress, lower: float, upper: float) -> float:
         # The overlap of the interval with the range of integration, if they overlap.
         start, end = max(interval.left, left_limit), min(interval.right, right_limit)
         if start < end:
+            # The background, and the Gaussian at x = 0.
             total += _integral_in_interval(prestress, interval, start, end)
     for centre, amplitude, width in prestress.bumps:
         total += amplitude * _gaussian_area(left_limit, right_limit, centre, width)
@@ -222,6 +223,7 @@ def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
         positions += (centre + width * OFFSETS_FROM_GAUSSIANS).tolist()
     for left, right, left_value, right_value in prestress.intervals:
         if left_value * right_value < 0.0:
+            # The zero of the straight line between the two values.
             positions.append(left - left_value * (right - left) / (right_value - left_value))
     divisions = np.sort(positions)
     for interval in reversed(prestress.intervals):

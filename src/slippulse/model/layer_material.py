@@ -109,7 +109,7 @@ class LayerMaterial:
         """Modulus lambda + 2G of uniaxial strain (Pa)."""
         if self.lame_parameter is not None:
             return self.lame_parameter + 2.0 * self.shear_modulus
-        # Here the ratio is not None, but type checkers do not know that.
+        # Here Poisson's ratio is not None, but type checkers do not know that.
         poisson_ratio = self.poisson_ratio or 0.0
         return 2.0 * self.shear_modulus * (1.0 - poisson_ratio) / (1.0 - 2.0 * poisson_ratio)
 

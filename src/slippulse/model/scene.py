@@ -47,6 +47,7 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
         self: "Scene", *given: Any, damping_ratio: float | None = None, **values: Any
     ) -> None:
         """Convert damping_ratio to beta, and call the original ``__init__``."""
+        # Arguments of earlier versions have an error message of their own.
         for name in values.keys() - signature.parameters:
             refuse_removed_argument("Scene", name)
         # All arguments by name, including those that were given by position.
@@ -235,7 +236,11 @@ class Scene:
             check_number("prestress.bumps reach", reach, at_most=max_reach)
 
     def _check_physics(self) -> None:
-        """Raise ValueError if gamma or the friction law does not fit the other parameters."""
+        """Raise ValueError if gamma or the friction law does not fit the other parameters.
+
+        Leaf springs need a held top. Friction alpha v must not let slip grow without limit, and the
+        scheme must be able to solve the friction law.
+        """
         if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
         else:

@@ -73,9 +73,10 @@ def accurate_step(
     mode of stiffness k and damping rate 2c, this rate is sqrt(k). If the mode is overdamped
     (c^2 > k), it is c + sqrt(c^2 - k).
 
-    The other arguments are explained in `largest_step`.
+    damping_ratio, gamma_dx2, alpha_dx : beta/dx, gamma dx^2 and alpha dx, as in `largest_step`
     """
-    # The fastest mode has s = 4, see `largest_step`. Here frequency is sqrt(k), and half_damping c.
+    # The shortest mode is the fastest. In units of dx, it has k = 4 + gamma dx^2 and
+    # 2c = 4 beta/dx + alpha dx. Here frequency is sqrt(k), and half_damping is c.
     frequency = math.sqrt(4.0 + gamma_dx2)
     half_damping = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)
     # This is sqrt(c^2 - k), or 0 if it is imaginary, written so that the squares do not overflow.
@@ -105,7 +106,8 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
 
     drag : alpha dx, not negative
     """
-    # The numbers s of the modes, from the longest to the shortest one (see `largest_step`).
+    # In units of dx, each mode has a number s, stiffness s + gamma dx^2 and damping rate
+    # (beta/dx) s + alpha dx. From the longest mode to the shortest one, s grows from 0 to 4.
     s = np.linspace(0.0, 4.0, 101)
     derivatives = _mode_derivatives(
         order, stiffness=s + gamma_dx2, damping=damping_ratio * s + drag

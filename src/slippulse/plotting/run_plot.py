@@ -118,9 +118,9 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
 def _drawn_table(run: xr.Dataset) -> pd.DataFrame:
     """Return everything that the panels show, with a role in each row.
 
-    These are the roles of `prestress_rows` and `edge_rows`, those of `velocity_rows` if anything
-    slides in the samples, and:
-
+    prestress : pre-stress as a function of position
+    front, trailing : times of first release and of last stick as functions of position
+    map, largest : sampled slip velocity and its maximum, if anything slides in the samples
     profile : final slip as a function of position
     end : the time at which the run ends
     """

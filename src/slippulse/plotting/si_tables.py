@@ -27,9 +27,10 @@ COLUMN_QUANTITIES = {"position": "length", "time": "time"}
 
 
 def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
-    """Convert the table of a run to SI units.
+    """Convert the table of everything that is drawn of a run to SI units.
 
-    The new column `unit` holds the unit of the column `value`, and is empty for dimensionless
+    Each row has a role, such as "map", and may have a number (column `value`), a position and a
+    time. The new column `unit` holds the unit of the column `value`, and is empty for dimensionless
     numbers. These rows are added:
 
     strength : static and kinetic friction, as stresses

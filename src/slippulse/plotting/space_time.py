@@ -245,7 +245,7 @@ def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     """Draw one map of slip velocity above x = 0 and another one below.
 
     rows : position, time and slip_velocity of the samples of both maps
-    half : the column of rows that distinguishes the two maps
+    half : name of the column whose two values distinguish the two maps
     """
     look = MAP_STYLE | {"shading": "nearest", "vmax": rows["slip_velocity"].max()}
     for _, samples in rows.groupby(half):

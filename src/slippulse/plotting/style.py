@@ -247,9 +247,10 @@ def draw_first_order(axes: Axes, spacings: pd.Series, slope: float, colour: str)
 
 
 def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
-    """Mark the regime of each run by colour and marker, with its level on the vertical axis.
+    """Mark the regime of each run by colour and marker, with its pre-stress on the vertical axis.
 
     x : the column on the horizontal axis
+    look : further arguments of `Axes.plot`; a colour or a label replaces that of the regime
     """
     for regime, rows in runs.groupby("regime"):
         colour, marker = REGIMES[str(regime)]

@@ -122,8 +122,8 @@ def _measure_in_model_units(run: xr.Dataset, settings: dict[str, Any]) -> dict[s
     profile = prestress_from(run.attrs)
     is_held = run.attrs["boundary"] == "displacement"
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
-        # The paper defines no transition for two different levels, so that `measured_row` has none
-        # except for a table of points. Here the first stick counts as the transition.
+        # The paper defines no transition for two different levels, so that `measured_row` has none,
+        # unless the pre-stress is a table of points. Here the first stick counts as the transition.
         numbers |= first_stick(run)
     has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:
@@ -143,7 +143,10 @@ def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleati
         return ""
     if numbers["boundary"] == "stress":
         if "transition_state" not in numbers:
-            return "under a stress boundary the paper defines it only for left < 0 and right = 0"
+            return (
+                "under a stress boundary the paper defines it only for left < 0 and right = 0,"
+                " without steps, and with a balance position"
+            )
         if math.isnan(time):
             return f"the left front did not cover {MEASURE_SETTINGS['fraction']:.0%} of |x_minus|"
     elif max(numbers["left"], numbers["right"]) <= 0.0:

@@ -44,13 +44,17 @@ def _regime(run: Run, still_fraction: float) -> str:
 def _regime_with_steps(run: Run) -> str:
     """Return the final regime of a run whose pre-stress has steps; UNDECIDED in most cases.
 
-    It is decided if a pulse to the right forms before it reaches the first step.
+    It is decided if a pulse runs to the right, towards the steps, and reaches the last one. A pulse
+    runs to the right under a stress boundary, with a negative level on the left and the level 0 on
+    the right. Before the last step, only a negative level could stop it.
     """
     profile = run.prestress
     has_pulse_levels = profile.left < 0.0 and profile.right == 0.0
-    pulse_forms = run.boundary == "stress" and has_pulse_levels
+    runs_to_the_right = run.boundary == "stress" and has_pulse_levels
     steps_are_ahead = all(position > 0.0 for position, _ in profile.steps)
-    if not (pulse_forms and steps_are_ahead):
+    levels_before_last_step = [level for _, level in sorted(profile.steps)[:-1]]
+    reaches_last_step = min(levels_before_last_step, default=0.0) >= 0.0
+    if not (runs_to_the_right and steps_are_ahead and reaches_last_step):
         return UNDECIDED
     # The velocity of the pulse grows by half the integral of the pre-stress that it crosses. So the
     # pulse grows, decays or is steady if the level beyond the last step is positive, negative or 0.

@@ -62,9 +62,10 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
 def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     """Return the balance distance, the numbers of the transition, and those of the far pulse.
 
-    All numbers need a pre-stress that is negative far to the left and 0 far to the right. Except
-    for the balance distance, they also need a single Gaussian between these levels. Without theory,
-    the numbers of the transition are NaN, and the others are left out.
+    The far pulse is the one that runs to the right, far from the nucleation. All numbers need a
+    pre-stress that is negative far to the left and 0 far to the right. Except for the balance
+    distance, they also need a single Gaussian between these levels. Without it, time and length of
+    the transition are NaN. Other numbers that cannot be computed are left out.
     """
     row = {**NO_TRANSITION}
     profile, damping_ratio = run.prestress, rounded_damping_ratio(run)

@@ -178,9 +178,9 @@ def _levels(prestress: Prestress) -> list[float]:
 
 
 def _levels_of_table(prestress: Prestress) -> list[float]:
-    """Return some levels from the lowest to the highest pre-stress of a table that is covered."""
+    """Return some levels, from low to high, of the pre-stress of a table in which fronts run."""
     tau = np.array([tau for _, tau in prestress.points])
-    # Lower pre-stress is not covered by the promise, and at 1 there is no front.
+    # At lower pre-stress, no accuracy is promised. At 1 or more, there is no front.
     covered = tau[(tau >= LOWEST_PRESTRESS) & (tau < 1.0)]
     if not covered.size:
         return []
@@ -222,12 +222,15 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
 def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: float) -> list[float]:
     """Return the largest spacing that each requirement on a front and pulse at a level allows.
 
+    Each error is a constant times a power of dx, and is solved for dx.
+
     nucleation_error_per_dx : error of T_trans and L_trans because of the nucleation, divided by dx
     """
     speed = cached_front_speed(level, demand.damping_ratio, demand.release)
     # In the limit dx -> 0, damping affects the pulse only through the front speed.
     width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
-    # The thickness of the boundary layer that damping makes at the front, in blocks.
+    # The thickness of the boundary layer that damping makes at the front, in blocks:
+    # b v/(v^2 - 1), where b is the damping ratio and v the front speed.
     layer = demand.damping_ratio * speed / ((speed - 1.0) * (speed + 1.0))
     # The error of the front speed is this constant times (dx/width)^2.
     speed_error = SPEED_ERROR + SPEED_ERROR_PER_LAYER * layer * speed
@@ -264,16 +267,21 @@ def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
     """Return the largest spacing that each requirement allows, under a stress boundary.
 
-    The requirements are of the same kinds as in `_spacings_with_springs`.
+    One kind of requirement is that MIN_BLOCKS blocks lie across each length of the pre-stress. The
+    other is that the error of a measured quantity is at most the error of the demand. Each error is
+    a constant times dx divided by a length, and is solved for dx.
     """
     error, damping_ratio = demand.error, demand.damping_ratio
+    # Distances from the nucleation at which the pre-stress falls to 0, if it does.
     distances = _distances_to_zero(demand.levels, prestress)
     spacings = [length / MIN_BLOCKS for length in (demand.peak_width, *distances)]
+    # The error of the speed of a front that runs into positive pre-stress.
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
     stops_on_left = prestress.left < 0.0 and prestress.right == 0.0
     if stops_on_left and distances:
-        # The errors of T_trans and of slip velocity are these constants times dx/distance.
+        # The errors of T_trans and of slip velocity are these constants times dx/distance. The
+        # first distance is the one on the left or, in a table, the shortest one.
         if not prestress.steps:
             transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / transition_error)

@@ -125,8 +125,9 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
 def front_restarted(scene: Scene, solution: Solution) -> bool:
     """Return True if waves of a few blocks may have set a front in motion again.
 
-    This is possible if the damping is weak. Only tables of pre-stress are examined, because for
-    constant levels the measured state of the transition shows that a front was delayed.
+    This is possible if the damping is weak. Only tables of pre-stress are examined. For constant
+    levels under a stress boundary, `slippulse.measure` returns the transition state "stalled" if
+    the lattice held up the front.
     """
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
         return False
@@ -177,12 +178,12 @@ def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
 def _nucleation_width(scene: Scene, solution: Solution) -> float:
     """Return the distance over which the pre-stress of the nucleation falls off.
 
-    It is the width of the Gaussian at x = 0 (that of the whole run if there is no Gaussian), or the
-    distance at which the pre-stress falls below 0 if that is shorter.
+    It is the width of the Gaussian at x = 0 (the length of the whole solution if there is no
+    Gaussian), or the distance at which the pre-stress falls below 0 if that is shorter.
     """
     profile, dx = scene.prestress, scene.dx
     width = solution.x.size * dx if profile.width is None else profile.width
-    # A table of pre-stress.
+    # In a table of pre-stress, search for the negative block that is nearest to the highest one.
     if profile.points:
         highest_block = np.argmax(solution.prestress)
         negative_blocks = np.flatnonzero(solution.prestress < 0.0)
@@ -190,7 +191,7 @@ def _nucleation_width(scene: Scene, solution: Solution) -> float:
         return float(np.min(distances, initial=width))
     if profile.width is None:
         return width
-    # A Gaussian that falls to a level on each side.
+    # Otherwise, the Gaussian falls to a level on each side.
     for level in (profile.left, profile.right):
         if level < 0.0 < profile.peak:
             # Where level + (peak - level) exp(-x^2 / 2 width^2) is 0.

@@ -86,7 +86,10 @@ def sweep(
 
 
 def _values(name: str, value: Any) -> list:
-    """Return the values of a parameter as a list, with one value if the parameter is no list."""
+    """Return the values of a parameter as a list, with one value if the parameter is no list.
+
+    The steps and bumps of the pre-stress are a list themselves, which is one value.
+    """
     is_sequence = isinstance(value, list | tuple | range | np.ndarray)
     if not is_sequence or name in SINGLE_PROFILE_NAMES:
         return [value]

@@ -20,7 +20,10 @@ def make_bar(total: float = 1.0) -> Callable[..., None] | None:
     bar = tqdm(total=total, delay=0.2, mininterval=0.2, bar_format=BAR_FORMAT)
 
     def draw(done: float, _: float = total) -> None:
-        """Draw the bar with the amount done. A sweep also passes the total, which is not used."""
+        """Draw the bar with the amount done, and close it when this is the total of the bar.
+
+        A sweep also passes the total as the second argument, which is not needed.
+        """
         # tqdm takes the amount done since the last time.
         bar.update(done - bar.n)
         if done >= total:

@@ -47,8 +47,9 @@ def solve_sweep(
         """Raise SweepStopped if the sweep was stopped; report the progress of a single scene."""
         if is_stopped.is_set():
             raise SweepStopped
+        # A sweep of several scenes reports the number of solved scenes instead.
         if len(scenes) == 1:
-            report(fraction_done, 1)
+            report(fraction_done, len(scenes))
 
     def solve_one(i: int) -> None:
         """Solve scene number i and keep its solution."""

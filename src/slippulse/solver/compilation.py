@@ -27,5 +27,7 @@ def compile_all(schemes: Iterable[str] = (*LATTICES, "layer")) -> None:
             )
             simulate_layer(small_layer)
         else:
-            small_scene = Scene("displacement", prestress, 1.0, dx=0.5, gamma=0.5, scheme=scheme)
+            small_scene = Scene(
+                "displacement", prestress, duration=1.0, dx=0.5, gamma=0.5, scheme=scheme
+            )
             solve_by_scheme(small_scene)

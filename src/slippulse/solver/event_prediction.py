@@ -323,7 +323,7 @@ def predict_sticks(motion, prediction, first, last, may_stick_count, now, step_e
             coefficients, prediction.slopes, top - 1, end_velocity[i], now, step_end
         )
         if stick_time < math.inf:
-            add_predicted_event(prediction, i, stick_time, False)
+            add_predicted_event(prediction, i, stick_time, is_law_kink=False)
         if may_stick_count == 0:
             break
     return True
@@ -392,7 +392,7 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
             coefficients[0] -= sign * argument_at_kink
             time_of_kink = predict_law_kink(coefficients, prediction.slopes, degree, now, step_end)
             if time_of_kink < math.inf:
-                add_predicted_event(prediction, i, time_of_kink, True)
+                add_predicted_event(prediction, i, time_of_kink, is_law_kink=True)
 
 
 @kernel_function(inline=True)

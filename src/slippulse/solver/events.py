@@ -303,7 +303,9 @@ def predict_events_again(medium, motion, segments, prediction, first, last, now,
 def apply_event(medium, motion, segments, prediction, difference, event, step_end, top):
     """Change the motion within reach of an event, and predict the next events of these blocks.
 
-    Returns the changes as an `EventEffect`.
+    Returns the changes as an `EventEffect`. For the energy balance, it contains the changes of the
+    slopes (time derivatives) of two powers: the viscous dissipation, called loss, and the work
+    against friction per unit time.
 
     event : `Event`, its time counted from the start of the step
     step_end : time of the end of the step, until which events are predicted

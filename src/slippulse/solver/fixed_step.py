@@ -277,7 +277,11 @@ LATTICES = {"localised": Lattice, "fixed_step": FixedStepLattice}
 def solve_by_scheme(
     scene: Scene, samples: Samples | None = None, progress: Callable[[float], None] | None = None
 ) -> Solution:
-    """Solve a scene on the lattice by the scheme that it names."""
+    """Solve a scene on the lattice by the scheme that it names.
+
+    In the textbook scheme, a front speed can be locked to a fraction of dx/dt, where dt is the
+    step. Such a solution is flagged.
+    """
     lattice_type = LATTICES[scene.scheme]
     solution = solve_on_lattice(scene, samples, progress, lattice_type=lattice_type)
     if scene.scheme == "fixed_step" and has_locked_front(solution):
@@ -286,9 +290,10 @@ def solve_by_scheme(
 
 
 def has_locked_front(solution: Solution) -> bool:
-    """Return True if a front of the textbook scheme is locked to a fraction of dx/dt.
+    """Return True if the speed of a front is locked to a fraction of dx/dt, where dt is the step.
 
-    In this case the numbers of steps between its releases repeat in a short cycle.
+    In this case the numbers of steps between its releases repeat in a short cycle. Only the
+    textbook scheme has such fronts.
     """
     step = solution.numbers["end_time"] / max(solution.numbers["steps"], 1)
     for side in (-1.0, 1.0):

@@ -36,9 +36,10 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
     localised : True for the Taylor step, False for the textbook scheme
     """
     traits = friction.traits
-    # The laws that are linear in slip velocity, or 0, are those that the exact solution covers.
+    # The exact solution covers only friction that is 0, or linear in slip velocity.
     is_linear = "continuum" in friction.schemes
-    # These laws have constants of their own in the kernels. The Taylor step solves no other laws.
+    # Both schemes solve linear friction by its constant alpha. The Taylor step also solves
+    # piecewise linear friction, by the constants of its kink, and no other laws.
     if localised or is_linear:
         return FrictionConstants(
             alpha=traits.linear_rate,

@@ -103,10 +103,13 @@ class Lattice:
         blocks_per_side = blocks_of_reach + arrays.EDGE_BLOCKS
         blocks_needed = blocks_per_side if self.is_mirrored else 2 * blocks_per_side
         while blocks_needed > self.size - arrays.EDGE_BLOCKS:
-            self._double()
+            self._double_length()
 
     def _release_nucleation(self) -> None:
-        """Release every block whose pre-stress is at the threshold at t = 0."""
+        """Release every block whose pre-stress is at the threshold at t = 0.
+
+        From then on such a block slides, because it has a release time and no stick time.
+        """
         # Array positions of these blocks. The ghost blocks at the two ends are left out.
         nucleation = np.flatnonzero(self.motion.tau[1:-1] >= 1.0) + 1
         self.history.release_time[nucleation] = 0.0
@@ -125,8 +128,8 @@ class Lattice:
         """Mask of the blocks that slide."""
         return np.isfinite(self.history.release_time) & np.isnan(self.history.stick_time)
 
-    def _double(self) -> None:
-        """Double the lattice; a mirrored lattice grows only on the right."""
+    def _double_length(self) -> None:
+        """Double the number of blocks; a mirrored lattice grows only on the right."""
         self._extend(0 if self.is_mirrored else self.size, self.size)
 
     def _extend(self, left: int, right: int) -> None:
@@ -212,7 +215,7 @@ class Lattice:
             if status in (arrays.END_REACHED, arrays.ALL_STUCK):
                 return status
             if status == arrays.LATTICE_TOO_SHORT:
-                self._double()
+                self._double_length()
             else:
                 self._check_stability(status, self.tally.time - start, limits)
             if progress is not None:

@@ -358,7 +358,7 @@ def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
     damped_fields : `DampedFields`, which share the velocities but not the stresses
     columns : `Columns`, which limit the range that is advanced
     """
-    # The stresses of the strain, those of the step before, and those that include damping.
+    # Fields with the elastic stresses, with those of the step before, and with damping added.
     fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
@@ -397,6 +397,7 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # infinite, all columns are advanced, including those at x < 0.
     trail_columns = int(min(scene.trail / h + PRECURSOR_CELLS, x.size))
     columns = Columns(centre, nucleation_columns, trail_columns)
+    # The first of its three groups of fields is ``fields``, which `advance_layer` changes in place.
     damped = damped_fields(elastic, fields)
     advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
     # The energy is computed at the time of the velocities that are copied here. This needs the
@@ -502,7 +503,10 @@ def _fields_at_rest(scene: LayerScene, size: int) -> Fields:
 
 
 def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
-    """Return the state of the bottom before t = 0, at nodes of positions x."""
+    """Return the state of the bottom before t = 0, at nodes of positions x.
+
+    All nodes are at rest. Friction is 0 at the nodes of the nucleus, where the rupture starts.
+    """
     tau = scene.prestress(x)
     # A quarter of a cell is added, so that rounding does not decide about the outermost node.
     nucleus = np.abs(x) <= scene.nucleation + 0.25 / scene.cells
@@ -515,6 +519,7 @@ def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
         strength=np.ones(x.size),
         release_time=np.full(x.size, np.nan),
         stick_time=np.full(x.size, np.nan),
+        # Shear stress minus strength, which is 0 in the nucleus and 1 elsewhere.
         excess=tau - np.where(nucleus, 0.0, 1.0),
         work=np.zeros(2),
     )

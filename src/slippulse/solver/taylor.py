@@ -259,6 +259,8 @@ def fill_derivatives(medium, motion, segments, alpha, top):
 
     The equation of motion gives derivative 2, the acceleration. Each of its time derivatives gives
     a higher one from the two before it. Friction is alpha v, or a piecewise linear law.
+
+    alpha : ``medium.alpha``, or the constant 0.0, for which the compiler leaves out this friction
     """
     # Row k of w is time derivative k. On a mirrored lattice, block 0 is the mirror image of block
     # 2, and is updated before each derivative that reads it.
@@ -411,15 +413,16 @@ def finish_step(medium, motion, scratch, tally, order, h):
     w, event_slip = motion.derivatives, motion.event_slip
     moved, step_events = scratch.moved, scratch.step_events
     fastest = 0.0
-    # The slip by the Taylor polynomials. Its change is left in the row SLIP_INCREMENT of w, which
-    # is also the row of the acceleration.
+    # Advance the slip by the Taylor polynomials, and set the velocity to that at the end of the
+    # step. The row of the acceleration, SLIP_INCREMENT, receives the change of slip.
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.end_velocity, first, last, h, order)
         tally.block_updates += last - first
         middle = (first + last) // 2
         fastest = max(fastest, w[VELOCITY, first], w[VELOCITY, middle], w[VELOCITY, last - 1])
-    # The slip that events of the step have added. It is added once to each block and then cleared.
+    # Add the slip by events of the step. It is cleared at once, because a block may be in the reach
+    # of several events.
     for q in range(step_events.count.n):
         for i in range(step_events.first[q], step_events.last[q]):
             w[SLIP, i] += event_slip[i]
@@ -435,8 +438,8 @@ def finish_step(medium, motion, scratch, tally, order, h):
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
-    # The next step computes the accelerations of sliding blocks in the row SLIP_INCREMENT. That of
-    # a block which has stuck is 0.
+    # Row SLIP_INCREMENT is again the acceleration from here on. The next step computes it for
+    # sliding blocks; for a block that has stuck, it is 0.
     for q in range(step_events.count.n):
         if step_events.stuck_block[q] >= 0:
             w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0

@@ -176,11 +176,15 @@ class Curve:
     def __init__(
         self, panels: list[Panel], restarts: tuple[Sequence[float], Sequence[float]] = ((), ())
     ) -> None:
+        """Store panels and restarts (where left fronts, and right fronts, became fast again)."""
         self.panels, self.restarts = panels, restarts
-        # Each field of `Panel` becomes one array for all panels. The axes are [panel, node] for the
-        # first three, and [panel, left or right end] for the last two.
-        fields = map(np.array, zip(*panels, strict=True))
-        self.x, self.time, self.source, self.x_ends, self.time_ends = fields
+        # The axes are [panel, node].
+        self.x = np.array([panel.x for panel in panels])
+        self.time = np.array([panel.time for panel in panels])
+        self.source = np.array([panel.source for panel in panels])
+        # The axes are [panel, left or right end].
+        self.x_ends = np.array([panel.x_ends for panel in panels])
+        self.time_ends = np.array([panel.time_ends for panel in panels])
         self.edges = np.append(self.x_ends[:, 0], self.x_ends[-1, 1])
         self.edge_times = np.append(self.time_ends[:, 0], self.time_ends[-1, 1])
         self.t_plus_x, self.t_minus_x = self.time + self.x, self.time - self.x
@@ -287,6 +291,7 @@ class Curve:
         The right one is traced back to the right, to where T + x = eta = t + y. First the panels
         are found, and then the parameters s on them.
         """
+        # The lowest values of T + x and T - x beyond each panel, which are searched by bisection.
         levels_to_right, levels_to_left = self._lowest_levels
         right, meets_right = _panels_of_crossings(
             self.edges, lowest_levels=levels_to_right, y=y, level=eta
@@ -303,6 +308,7 @@ class Curve:
         numbers_right = self.polynomial_numbers("t_plus_x", right)
         numbers = np.concatenate([numbers_left, numbers_right])
         s = self._find_parameters(numbers, np.concatenate([xi, eta]))
+        # A characteristic that does not meet the curve has the parameter of the nearest end.
         s_left = np.where(meets_left, s[: y.size], -1.0)
         s_right = np.where(meets_right, s[y.size :], 1.0)
         return Crossing(left, s_left, meets_left), Crossing(right, s_right, meets_right)
@@ -413,15 +419,16 @@ def _lowest_level_beyond(
 ) -> list[np.ndarray]:
     """Return, for each panel, the lowest level of this panel and of later ones in its region.
 
-    The result has one array for each region. A region ends at a restart, where levels have a
-    maximum. A characteristic that meets the curve before this maximum is not followed beyond it,
-    so that panels of later regions do not count.
+    The result has one array for each region. A region ends at a restart of a front, where levels
+    have a maximum. A characteristic that meets the curve before this maximum is not followed beyond
+    it, so that panels of later regions do not count.
 
     levels : T + x at the right ends of the panels, from left to right, for characteristics that run
         to the right; T - x at the left ends, from right to left, for those that run to the left
     edges : ends of the panels, in the same order
     restarts : positions where the regions end
     """
+    # The number of the first panel after each restart, which is at an edge of panels.
     region_ends = sorted(int(np.argmin(np.abs(edges - x))) for x in restarts)
     lowest = []
     for levels_of_region in np.split(levels, region_ends):
@@ -452,9 +459,10 @@ def _panels_of_crossings(
     region_start = 0
     for lowest_levels_of_region in lowest_levels:
         region_end = region_start + lowest_levels_of_region.size
-        # From the right end of this panel to the end of the region, T + x is not below the level.
-        # The lowest levels are in ascending order.
+        # The first panel from whose right end to the end of the region T + x is not below the
+        # level. The lowest levels are in ascending order.
         candidate = region_start + np.searchsorted(lowest_levels_of_region, level, side="left")
+        # Regions that end on the left of a point do not count.
         has_crossing = (panel_of_point < region_end) & (candidate < region_end)
         is_not_found = panel == panel_count
         panel = np.where(has_crossing & is_not_found, candidate, panel)
@@ -465,8 +473,9 @@ def _panels_of_crossings(
 def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Return the values of polynomials (row 0) and their derivatives (row 1) at parameters s.
 
-    There is one parameter for each polynomial. coefficients come from `with_slopes`. For speed,
-    each polynomial is split into four polynomials q of the fourth power of s (Estrin's scheme):
+    There is one parameter for each polynomial. coefficients come from `with_slopes`, with the axes
+    [group of four powers, row of the group, polynomial]. For speed, each polynomial is split into
+    four polynomials q of the fourth power of s (Estrin's scheme):
 
         p(s) = q_0(s^4) + s q_1(s^4) + s^2 q_2(s^4) + s^3 q_3(s^4).
     """

@@ -109,7 +109,7 @@ def uniform_transition_time(
     # A tiny tau would lose digits.
     tau = max(tau0, 1e-9)
     # The time is computed at gamma = 1, where it is below 10. Until then only the fronts at a
-    # distance below 10 influence x = 0. The curve is longer: 12/(1 - 1/v^2), up to MAX_REACH.
+    # distance below 10 influence x = 0. The curve of the fronts extends at least to 12.
     reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
     edges_of_panels = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
     curve = Curve(straight_panels(edges_of_panels, slowness, tau))

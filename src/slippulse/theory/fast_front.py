@@ -79,7 +79,7 @@ class FastFront:
         self.kernel_rate = kernel_rate(self.gamma, self.alpha)
         self._set_features()
         # Without Gaussians the pre-stress is linear in each interval, so that it is lowest at an
-        # end. A Gaussian may lower it at one of its features.
+        # end. A Gaussian may lower it, most at one of the features (positions in the Gaussian).
         _, _, left_values, right_values = prestress.interval_table.T
         lowest_at_ends = np.min([left_values, right_values])
         lowest = float(np.min(prestress(self.features), initial=lowest_at_ends))
@@ -98,7 +98,8 @@ class FastFront:
         # The axes are [Gaussian, feature].
         features = centres[:, None] + widths[:, None] * FEATURE_DISTANCES
         self.features = np.unique(features)
-        # A Gaussian is narrow compared with the length over which waves change, 1/kernel_rate.
+        # A Gaussian is narrow compared with the length over which waves change, 1/kernel_rate. This
+        # length is infinite without leaf springs and drag.
         is_narrow = (widths * self.kernel_rate < NARROW_WIDTH) | (self.kernel_rate == 0.0)
         self.narrow_features = features[is_narrow].ravel()
 
@@ -120,8 +121,9 @@ class FastFront:
     def marks(self) -> list[float]:
         """Positions from which waves come, because the motion of the front changes there.
 
-        These are the positions where two pieces meet. Only the kinks of a table of points are left
-        out: the pre-stress is continuous there, and has the same sign on both sides.
+        These are the positions where two pieces (intervals of smooth pre-stress of one sign) meet.
+        Only the kinks of a table of points are left out: the pre-stress is continuous there, and
+        has the same sign on both sides.
         """
         marks = []
         for piece, next_piece in pairwise(self.pieces):
@@ -137,7 +139,7 @@ class FastFront:
         return self.pieces[bisect_right(self._piece_ends, x)]
 
     def max_panel_length(self, background: Interval) -> float:
-        """Return the largest length of a panel in an interval of linear pre-stress.
+        """Return the largest allowed length of a panel on one interval of the linear background.
 
         The phase of the waves changes by at most MAX_PHASE along such a panel. It changes by
         kernel_rate times the proper length along the front, the integral of sqrt(dx^2 - dT^2).
@@ -146,8 +148,8 @@ class FastFront:
             return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
         # The phase changes fastest where the front is fastest, at the higher end of the interval.
         level = max(background.left_value, background.right_value)
-        # If the level is not positive, tau can only be so because of a Gaussian of unknown height.
-        # Then the largest possible phase is assumed.
+        # If the background is not positive, a Gaussian of unknown height drives the front. Then the
+        # largest possible proper length is assumed, which belongs to an infinite speed.
         proper_length_per_x = 1.0
         if level > 0.0:
             slowness = self.slowness(np.array(min(level, 1.0)))
@@ -166,11 +168,11 @@ class FastFront:
         """
         x, time = start
         panels: list[Panel] = []
-        # Beyond this position all Gaussians are 0.
+        # Features are positions in the Gaussians. Beyond the last one all Gaussians are 0.
         last_feature = float(np.max(self.features, initial=-np.inf))
         while x < stop and time < until:
             piece = self.piece_right_of(x)
-            # In negative pre-stress the front is slower than the waves.
+            # In negative pre-stress (not above 0) the front is slower than the waves.
             if not piece.is_above:
                 break
             end = min(stop, piece.right)
@@ -229,9 +231,8 @@ class FastFront:
         edges_between = []
         for (left, right), panel_count in zip(pairwise(ends), panel_counts, strict=True):
             edges_between.append(np.linspace(left, right, panel_count + 1))
-        edges = np.unique(np.concatenate(edges_between))
-        edges[0], edges[-1] = start, end
-        return edges
+        # Each end of an interval is also the start of the next one, and is kept only once.
+        return np.unique(np.concatenate(edges_between))
 
     def _too_many_panels_error(self, background: Interval, distance: float) -> ValueError:
         """Return the error for a front that needs too many panels over a distance."""
@@ -252,18 +253,16 @@ def straight_panels(edges: np.ndarray, slowness: float, tau: float) -> list[Pane
     """
     panels = []
     for left, right in pairwise(edges.tolist()):
-        half = 0.5 * (right - left)
-        # dT/dx changes its sign at x = 0.
-        slope = slowness if left + right > 0.0 else -slowness
-        x = left + half * (1.0 + NODES)
-        source = np.full(NODE_COUNT, tau * half)
+        # The parameter s of a panel runs from -1 to 1. Hence dx/ds is half the length of the panel.
+        dx_ds = 0.5 * (right - left)
+        x = left + dx_ds * (1.0 + NODES)
         panels.append(
             Panel(
                 x=x,
-                time=slope * x,
-                source=source,
+                time=slowness * np.abs(x),
+                source=np.full(NODE_COUNT, tau * dx_ds),
                 x_ends=(left, right),
-                time_ends=(slope * left, slope * right),
+                time_ends=(slowness * abs(left), slowness * abs(right)),
             )
         )
     return panels

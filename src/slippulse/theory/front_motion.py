@@ -71,13 +71,18 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
     prestress = 1.0 / stress_ahead[-1]
     stays_stuck = np.all(prestress * stress_ahead[:-1] < 1.0)
     slides = np.all(velocity_of_block_0[1:] > 0.0)
-    return SteadyFront(float(prestress), prestress * stress_ahead, bool(stays_stuck and slides))
+    return SteadyFront(
+        prestress=float(prestress),
+        ahead=prestress * stress_ahead,
+        admissible=bool(stays_stuck and slides),
+    )
 
 
 def _equation_of_motion(count: int, damping_ratio: float, springs: float) -> np.ndarray:
     """Return the matrix of d(state)/dt = matrix state, for all sliding blocks behind the front.
 
     The rows and columns belong to the slips, the velocities, and the constant 1, in this order.
+    springs is the stiffness of the leaf springs, gamma dx^2.
     """
     # The block ahead of block 0 is stuck and has no slip. At the last block, slip has the curvature
     # of the block before.

@@ -172,7 +172,7 @@ def log_prestress_in_chunks(
     values = []
     for start in range(0, excess_speed.size, FRONTS_PER_CHUNK):
         chunk = slice(start, start + FRONTS_PER_CHUNK)
-        values.append(log_prestress(excess_speed[chunk], damping_ratio[chunk], 0.0, release))
+        values.append(log_prestress(excess_speed[chunk], damping_ratio[chunk], release=release))
     return np.concatenate(values)
 
 

@@ -41,17 +41,16 @@ def lattice_front_speed(
 ) -> float:
     """Return the exact front speed with leaf springs, damping and drag -alpha du/dt.
 
-    There is a least pre-stress, below which no front outruns the waves. With strong damping and
-    rule "total", two speeds belong to a pre-stress slightly above it. The higher one is returned,
-    which grows with the pre-stress.
+    There is a least pre-stress, below which no front outruns the waves. (The shortest waves have
+    the phase velocity sqrt(4 + gamma dx^2)/pi. Fronts behind which slip runs away do not count; it
+    may run away if friction weakens with slip velocity.) With strong damping and rule "total", two
+    speeds belong to a pre-stress slightly above it. The higher one is returned, which grows with
+    the pre-stress.
     Source: Wiener-Hopf factorisation of the lattice equation with leaf springs (`wiener_hopf`). It
     has a closed form without damping, and tends to `front_speed` as gamma dx^2 -> 0. Blocks that
     stick behind the front are neglected. The relative error is below 1e-6 next to tau_0 = 1 for
     gamma dx^2 (1 + beta/dx) up to 10.
-    Raises ValueError: outside the ranges below, or if tau0 is not above the least pre-stress. It is
-    the least one of all fronts that are faster than sqrt(4 + gamma dx^2)/pi, the phase velocity of
-    the shortest waves, and behind which slip does not run away. (Slip may run away if friction
-    weakens with slip velocity.)
+    Raises ValueError: outside the ranges below, or if tau0 is not above the least pre-stress.
 
     Parameters
     ----------

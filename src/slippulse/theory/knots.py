@@ -104,15 +104,18 @@ class Knots(NamedTuple):
         return self.has_end_kinds(k, FASTER_THAN_WAVES, FASTER_THAN_WAVES) & ~self.has_jump(k)
 
     def touches_brief_slip(self, k: np.ndarray) -> np.ndarray:
-        """Return a mask of the intervals with at least one knot of the kind BRIEF_SLIP."""
+        """Return a mask of the intervals with at least one knot of the kind BRIEF_SLIP.
+
+        The slip of such a knot is too brief to show whether the edge is faster than the waves.
+        """
         return (self.kind[k] == BRIEF_SLIP) | (self.kind[k + 1] == BRIEF_SLIP)
 
     def has_jump(self, k: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the edge jumps.
 
         It jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
-        although it is not known to be slow there. A change of the edge from faster to slower than
-        the waves counts as a jump.
+        although it is not known to be slow there. Its speed must be known at both knots, which it
+        is not at a BRIEF_SLIP. A change from faster to slower than the waves counts as a jump.
         """
         duration = np.abs(self.stick[k + 1] - self.stick[k])
         length = self.x[k + 1] - self.x[k]

@@ -150,7 +150,7 @@ class _LinearSlip:
         return not (grows or oscillates or overshoots)
 
 
-def _zone_and_slip_beyond(
+def _weakening_zone_and_slip_beyond(
     v: float, tau0: float, gamma: float, beta: float, weakening: float
 ) -> tuple[float, _LinearSlip]:
     """Return the end xi of the weakening zone behind a front of speed v, and the slip beyond it.
@@ -175,13 +175,13 @@ def _zone_and_slip_beyond(
     if not is_beyond_zone[first_beyond] or has_stopped[:first_beyond].any():
         return math.nan, slip_in_zone
 
-    def slip_to_go(position: float) -> float:
+    def excess_slip(position: float) -> float:
         """Return the slip minus the weakening distance, which is 0 at the end of the zone."""
         return float(slip_in_zone.evaluate(position)) - weakening
 
     # The end of the zone is between the first sample beyond it and the sample before (or xi = 0).
     before = 0.0 if first_beyond == 0 else float(xi[first_beyond - 1])
-    end = root_between(slip_to_go, float(xi[first_beyond]), before)
+    end = root_between(excess_slip, float(xi[first_beyond]), before)
     start = np.array([float(slip_in_zone.evaluate(end, order)) for order in range(3)])
     slip_beyond_zone = _LinearSlip(
         damping=damping, inertia=inertia, stiffness=gamma, load=tau0, start=start
@@ -223,11 +223,11 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         If it is too low, slip velocity falls to 0 before its first minimum. If it is too high, slip
         velocity is above 0 at the minimum, and grows behind it.
         """
-        zone_end, slip_beyond_zone = _zone_and_slip_beyond(
+        zone_end, slip_beyond_zone = _weakening_zone_and_slip_beyond(
             v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
         )
         if math.isnan(zone_end):
-            # The slip stops while friction still weakens.
+            # The slip stops inside the weakening zone, where friction still falls.
             return -1.0
         return -1.0 if slip_beyond_zone.first_velocity_minimum().stops_before else 1.0
 
@@ -241,7 +241,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         allowed = f"values with a steady rupture at a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
     speed = root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
-    zone_end, slip_beyond_zone = _zone_and_slip_beyond(
+    zone_end, slip_beyond_zone = _weakening_zone_and_slip_beyond(
         speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
     )
     minimum = slip_beyond_zone.first_velocity_minimum()
@@ -252,7 +252,8 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     nearer, farther = minimum.bracket.tolist()
     stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
     final_slip = float(slip_beyond_zone.evaluate(stick))
-    # Both positions are negative: the end of the zone, and the stick as seen from there.
+    # Both positions are negative: the end of the zone in which friction weakens, and the stick as
+    # seen from there.
     return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=final_slip)
 
 

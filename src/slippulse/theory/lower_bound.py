@@ -126,6 +126,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     past_of_c = part.domains(middle, time_at_c)
     c_slides = curve.arrival(middle) < time_at_c
     k = past_of_c.stiffness
+    # The points of the curve where the past of a begins, and where the past of b ends.
     a_begins, b_ends = curve.crossings(middle, time - a, time + b)
     past = PastOnCurve(a_begins, past_of_c.left, past_of_c.right, b_ends)
     # w and F are divided by exp(alpha t/2) at the time of a and b, so that w is du/dt there. At c,
@@ -147,9 +148,10 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     is_bound_positive = c_slides & (lower_bound > 0.0)
     # If c has not slipped, w is an integral of tau times the Bessel function J0. It is positive if
     # all pre-stress in the past is, and if the largest argument of J0, sqrt(k d_xi d_eta), is below
-    # its first zero. This condition is sufficient also if c has slipped.
-    to_a_begins, to_b_ends = _integrals_from_left_end(loss_density, [a_begins, b_ends])
-    is_past_positive = to_b_ends - to_a_begins <= 0.0
+    # its first zero. This condition is sufficient also if c has slipped. The past has no negative
+    # pre-stress if there is no loss between the points where it begins and ends.
+    loss_to_begin, loss_to_end = _integrals_from_left_end(loss_density, [a_begins, b_ends])
+    is_past_positive = loss_to_end - loss_to_begin <= 0.0
     d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
     d_eta = time + b - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
     is_kernel_positive = k * d_xi * d_eta < SQUARED_FIRST_ZERO
@@ -159,22 +161,25 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
 def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.ndarray:
     """Return the integral of a density along the curve, for each pair of positions a and b.
 
-    It covers the past of a and of b, except the past of the point c. The density is a function per
-    unit of the parameter of each panel, given at the nodes.
+    It covers the past of a and of b, except the past of the point c, from which waves arrive at
+    both. The density is a function per unit of the parameter of each panel, given at the nodes.
     """
     to_a_begins, to_c_begins, to_c_ends, to_b_ends = _integrals_from_left_end(density, past)
     return to_c_begins - to_a_begins + to_b_ends - to_c_ends
 
 
 def _integrals_from_left_end(density: np.ndarray, ends: Sequence[Crossing]) -> np.ndarray:
-    """Return the integrals of a density from the left end of the curve to several points.
+    """Return the integrals of a density from the left end of the curve to several points on it.
 
-    The result has a row for each of the ends, and a column for each pair. The density is a function
-    per unit of the parameter of each panel, given at the nodes.
+    Each element of ends has one point for each pair of positions a and b. The result has a row for
+    each element, and a column for each pair. The density is a function per unit of the parameter of
+    each panel, given at the nodes.
     """
     panel = np.concatenate([end.panel for end in ends])
     s = np.concatenate([end.s for end in ends])
-    by_panel = density @ WEIGHTS
-    before_panel = np.cumsum(by_panel) - by_panel
+    over_panel = density @ WEIGHTS
+    # The integral over all panels before each panel.
+    before_panel = np.cumsum(over_panel) - over_panel
+    # The integral from the left end of its panel to each point.
     in_panel = np.sum(partial_weights(s) * density[panel], axis=-1)
     return (before_panel[panel] + in_panel).reshape(len(ends), -1)

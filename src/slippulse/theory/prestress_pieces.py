@@ -36,7 +36,7 @@ class Piece(NamedTuple):
 
 
 def uniform_background(level: float) -> Interval:
-    """Return the background of one level everywhere."""
+    """Return the background (a pre-stress without its Gaussians) that has one level everywhere."""
     return Interval(left=-np.inf, right=np.inf, left_value=level, right_value=level)
 
 
@@ -111,14 +111,14 @@ def _crossings_of_value(
 ) -> tuple[bool, list[float]]:
     """Return a flag and the positions where tau crosses a value, in an interval of the background.
 
-    The flag is True if tau >= value at the left end of the interval. A position appears twice where
-    tau only touches the value. samples are sorted positions, so dense that tau crosses the value at
-    most once between two of them.
+    The flag is True if tau >= value at the left end of the interval. samples are sorted positions,
+    so dense that tau crosses the value at most once between two of them. Where tau only touches the
+    value from below, it rises to the value and falls again, so that the position appears twice.
     """
     left, right = background.left, background.right
     inner_samples = samples[(samples > left) & (samples < right)]
-    # The outermost intervals are infinite. Beyond all Gaussians they are uniform, so that one more
-    # sample there is sufficient.
+    # An outermost interval is infinite. Beyond all Gaussians, and thus beyond all samples, it is
+    # uniform, so that one more sample there is sufficient.
     first = left if np.isfinite(left) else min([*samples[:1], right]) - 1.0
     last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0
     x = np.concatenate([[first], inner_samples, [last]])

@@ -207,12 +207,14 @@ class DependenceDomains:
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        They are the derivatives of the formula 2 du/dt = Int tau E K dx over the front t = T(x),
-        from x_l to x_r. With g = T - x and h = T + x, the argument of the kernel K is
-        k (xi - g) (eta - h). By xi, the derivative of K is k (eta - h) K', that of the left end
-        x_l (where g = xi) is dx/dg, and that of the decay factor E is -alpha/4 E. By eta, the
-        derivative of K is k (xi - g) K', that of the right end x_r (where h = eta) is dx/dh, and
-        that of E is -alpha/4 E. The other end does not move.
+        The formula 2 du/dt = Int tau E K dx, where the integral is over the front from x_l to x_r
+        and the argument of the kernel K is k (xi - g) (eta - h), has the derivatives
+
+            by xi:   k Int tau E K' (eta - h) dx - (E tau dx/dg at x_l) - alpha/2 du/dt,
+            by eta:  k Int tau E K' (xi - g) dx  + (E tau dx/dh at x_r) - alpha/2 du/dt.
+
+        The second terms arise because x_l (where g = xi) and x_r (where h = eta) move. The last
+        ones arise from the decay factor E = exp(-alpha/4 [(xi - g) + (eta - h)]).
         """
         decay_left, decay_right = self._decay_at_ends()
         # E tau dx/dg at x_l, and E tau dx/dh at x_r.
@@ -432,8 +434,9 @@ class DependenceDomains:
     ) -> np.ndarray:
         """Return the integrals of `_integrate` if the kernel K and the decay factor E are 1.
 
-        Then the integrand is the same for all points. Each integral is the integral from the left
-        end of the curve to the right end of the domain, minus that to the left end of the domain.
+        Then the integrand is the same for all points. The integral over the domain of a point is
+        the one from the left end of the curve to the right end of the domain, minus the one to the
+        left end of the domain.
         """
         # Where an integrand contains xi - g or eta - h, it has the factor k = 0. So any values of
         # these two fields will do.
@@ -448,10 +451,11 @@ class DependenceDomains:
             on_panel = np.add.reduce(partial_weights(s) * values_by_panel[panel], axis=-1)
             return before_panel[panel] + on_panel
 
+        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
+        # next panel.
         first_panel = np.minimum(self.left.panel, self.right.panel)
         up_to_right_end = integral_up_to(self.right.panel, self.right.s)
         integrals = up_to_right_end - integral_up_to(first_panel, self.left.s)
-        # A point on the curve at the end of a panel has an empty domain.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
 
 
@@ -499,7 +503,7 @@ def decay(alpha: float, xi_minus_g: np.ndarray, eta_minus_h: np.ndarray) -> np.n
 
 
 def kernel_function(stiffness: float, z: np.ndarray, z_at_ends: np.ndarray) -> Callable:
-    """Return a function of the order that gives the kernel K (order 0), K' (1) or K'' (2) at z.
+    """Return a function that computes, for an order 0, 1 or 2, the kernel K, K' or K'' at z.
 
     z may also contain nodes that no integral uses. z_at_ends are the values on the first and the
     last panel of each integral. If the stiffness is not negative, only these panels have nodes

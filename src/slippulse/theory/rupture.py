@@ -208,6 +208,7 @@ class Rupture(ExplainsRemovedNames):
         for part, ends in zip(self._parts, self.front_ends, strict=True):
             if part.curve.arrival(x) <= time * (1.0 + EQUALITY_TOLERANCE):
                 left, right = (part.curve.front_at(time, x, side) for side in (LEFT, RIGHT))
+                # A front that ends for any other reason is unknown after its end.
                 is_left_lost, is_right_lost = (
                     end.reason not in ("stops", "duration") and end.time < time for end in ends
                 )
@@ -314,6 +315,7 @@ class Rupture(ExplainsRemovedNames):
         time = self._checked_time(time)
         if not self.first_stick or time <= self.first_stick.time * (1.0 + EQUALITY_TOLERANCE):
             return np.nan
+        # The fronts of the part that sticks first, if the rupture has several parts.
         left, right = self.fronts_at(time, self.first_stick.x)
         front = right if side == "right" else left
         trailing_edge = self._trailing_edge_behind(front, time, self.first_stick.x)

@@ -259,9 +259,9 @@ class FreeBoundary:
         """Compute the quantities that do not depend on the unknown positions of the front.
 
         Each node of the chunk is an entry, and belongs to one integral over the curve, from this
-        entry to the front. The weights, and d_xi, T - x at the entry minus T - x at a node of the
-        curve, have one row for each integral. They have one column for each node, from the panel of
-        the entries on.
+        entry to the front. The weights and d_xi have one row for each integral, and one column for
+        each node of the curve, from the panel of the entries on. d_xi is T - x at the entry minus
+        T - x at the node.
         """
         curve, panel = front.curve, chunk.panel
         s = chunk.parameters()
@@ -310,8 +310,9 @@ class FreeBoundary:
         dx_ds = NODES_TO_DERIVATIVES @ x
         integrals = over_known + prestress_integral + integrate_kernel_minus_1 @ (tau * dx_ds)
         # The derivatives of all integrals (rows) by all positions (columns). A position changes
-        # dx/ds and tau at its node. It also changes the kernel: in its own integral at all nodes,
-        # and in each other integral at its node, by the opposite amount.
+        # dx/ds and tau at its node. The kernel depends on T + x at the end of an integral minus
+        # T + x at a node. So a position changes it at all nodes of its own integral, and with the
+        # opposite sign at its own node of each integral.
         by_dx_ds = (integrate_kernel_minus_1 * tau) @ NODES_TO_DERIVATIVES
         by_tau = integrate_kernel_minus_1 * (NODES_TO_DERIVATIVES @ tau)
         by_kernel = NODES_TO_INTEGRALS * kernel_slope[:, known_count:] * (tau * dx_ds)
@@ -324,7 +325,8 @@ class FreeBoundary:
 
         x has the positions of the front, at which the integrals end. Both results have one row for
         each integral, and one column for each node of the known curve and of the new panel. E is
-        the decay factor exp(-alpha (d_xi + d_eta)/4) by drag, and z = k d_xi d_eta.
+        the decay factor exp(-alpha (d_xi + d_eta)/4) by drag, and z = k d_xi d_eta. d_xi and d_eta
+        are T - x and T + x at the front, minus those at the node.
         """
         k, alpha = self.front.stiffness, self.front.alpha
         # T + x at the front, where T - x has its value at the entry.
@@ -332,7 +334,7 @@ class FreeBoundary:
         d_eta = eta[:, None] - np.append(self.known_t_plus_x, eta)
         z = k * self.d_xi * d_eta
         # This function computes J0(sqrt z) (order 0), or its derivative by z (order 1).
-        bessel = kernel_function(k, z, z)
+        bessel = kernel_function(k, z, z_at_ends=z)
         exponential = decay(alpha, self.d_xi, d_eta) if alpha else 1.0
         kernel = exponential * bessel(0)
         # If x changes, d_eta changes by 2 dx. So z changes by 2 k d_xi dx, and E by -alpha/2 E dx.
@@ -376,9 +378,9 @@ class SlowFront:
     def next_panel(self, mark: float, progress: Progress) -> Advance:
         """Continue the front by the next panel, whose entries lie on one panel of the curve.
 
-        mark is the end of the negative pre-stress; it may be infinite. The panel ends at the latest
-        where the front stops, for a while or for ever. The reason in the result is None if the
-        front can go on, and otherwise one of
+        mark is the end of the negative pre-stress; it may be infinite. progress is the state that
+        the panel before has left. The new panel ends at the latest where the front stops, for a
+        while or for ever. The reason in the result is None if the front can go on, otherwise one of
 
             "mark"        the new panel ends at the mark;
             "stops"       the front could only run back;
@@ -451,7 +453,8 @@ class SlowFront:
         x_end = mark if reaches_mark else float(NODES_TO_ENDS[1] @ x)
         panel = self.panel_of_chunk(chunk, x, x_end)
         next_length = PANEL_LENGTH
-        # A chunk that ends within its panel of entries, but not at an event, was too long at first.
+        # A chunk that stops before the left end of its panel of entries (s = -1), but not at an
+        # event, was too long at first.
         if event.name == "none" and chunk.stop != -1.0:
             next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
         last_entry_x = self.position(Entry(chunk.panel, chunk.stop))
@@ -484,19 +487,20 @@ class SlowFront:
                 return self.entry_behind_slow_front()
             skipped = self.entries_to_skip(Entry(panel, s), skipped_motion, negligible)
             skipped_motion = skipped.total_motion
-            if not skipped.skips_all:
-                # On a later panel, all entries of the panels before it have been skipped.
-                has_skipped = skipped.skips_any or panel < first.panel
-                if not has_skipped:
-                    return first
-                if not skipped.next_moves_on:
-                    # The entries after the skipped ones would move the front back.
-                    return NO_ENTRY
-                # The motion must be positive, since a motion of 0 means that nothing was skipped.
-                min_motion = 0.1 * ROUNDING_MOTION * self.size
-                return Entry(panel, skipped.last_s, max(skipped_motion, min_motion))
-            # The next panel is examined from its right end.
-            s = 1.0
+            if skipped.skips_all:
+                # The next panel is examined from its right end.
+                s = 1.0
+                continue
+            # If the search has gone on to a panel farther left, the first entry has been skipped.
+            is_first_skipped = skipped.skips_any or panel < first.panel
+            if not is_first_skipped:
+                return first
+            if not skipped.next_moves_on:
+                # The entries after the skipped ones would move the front back.
+                return NO_ENTRY
+            # The motion must be positive, since a motion of 0 means that nothing was skipped.
+            min_motion = 0.1 * ROUNDING_MOTION * self.size
+            return Entry(panel, skipped.last_s, max(skipped_motion, min_motion))
         return NO_ENTRY
 
     def entry_left_of(self, last_entry_x: float) -> Entry:
@@ -576,8 +580,9 @@ class SlowFront:
     def panel_until_arrival(self, entry: Entry) -> Panel | None:
         """Return a panel for the time in which the front waits for the wave from an entry.
 
-        On this panel the front is moved by the entries that were skipped before this one, by a
-        negligible distance. None if no entry was skipped, or if the wave has arrived already.
+        Until then only waves arrive that were skipped, because all of them together move the front
+        by a negligible distance, ``entry.skipped_motion``. None if no entry was skipped, or if the
+        wave has arrived already.
         """
         # T - x does not change along the wave.
         t_minus_x = self.value_at("t_minus_x", entry)
@@ -587,7 +592,7 @@ class SlowFront:
         if entry.skipped_motion == 0.0 or has_arrived:
             return None
         # x and T grow linearly with the parameter of the panel, which runs from -1 to 1. The source
-        # is tau dx/ds, and dx/ds is half of the motion.
+        # is tau dx/ds, where tau is negative and dx/ds is half of the motion.
         return Panel(
             x=self.x0 + 0.5 * (x_end - self.x0) * (1.0 + NODES),
             time=self.t0 + 0.5 * (time_end - self.t0) * (1.0 + NODES),
@@ -611,8 +616,8 @@ class SlowFront:
 
         This is used if the wave entered through an earlier part of the slow front itself. Two waves
         are traced back from the front to the curve: the one that arrives now, and one that arrives
-        slightly later. Next entries are on the panel where the later wave has entered. None if it
-        comes from beyond the end of the curve.
+        slightly later. The next entries are on the panel where the later wave has entered. None if
+        this wave comes from beyond the end of the curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))
@@ -623,10 +628,11 @@ class SlowFront:
         panel_now, panel = entries.panel.tolist()
         s_now, s_later = entries.s.tolist()
         # If the wave that arrives now entered close to the right end of this panel, the next entry
-        # is this end. The position of the later wave would leave out the entries in between.
+        # is this end, because the entry of the later wave would leave out those in between.
         right_end = self.curve.panels[panel].end
         if abs(right_end.time - right_end.x - t_minus_x) < 10.0 * delay:
             return Entry(panel, s=1.0)
+        # The wave that arrives now is preferred if it has entered on this panel.
         s = s_now if panel_now == panel else s_later
         # If nearly nothing of the panel is left, from s down to its left end at -1, the next panel
         # is used. Such a small remainder cannot be resolved.
@@ -669,8 +675,8 @@ class SlowFront:
         """Return the positions of the front at the nodes of a chunk as if gamma were 0.
 
         Without leaf springs (gamma = 0) the integral of tau from the entry to the front is 0. So
-        the front moves right by -(tau at the entry)/(tau at the front) times the distance from the
-        first entry of the chunk to the left. The ratio is kept between 0.001 and 10.
+        if the entry moves left by a distance, the front moves right by the same distance times
+        -(tau at the entry)/(tau at the front). This ratio is kept between 0.001 and 10.
         """
         first_entry = Entry(chunk.panel, chunk.start)
         # The source is tau dx/ds.

@@ -66,7 +66,7 @@ class SolvedPart(PartWithEdge):
                 values[has_stuck] = at_stick[index[has_stuck]]
 
     def falling_slip(self, horizon: Callable) -> list[Point]:
-        """Return the points of release of positions whose slip would fall while they slide.
+        """Return points of release (x, t): those of positions whose slip would fall while sliding.
 
         Some positions are checked. Their slip must grow from the release to the middle of the
         sliding time, and from there to its end. This end is the stick, or the horizon if it is
@@ -78,12 +78,15 @@ class SolvedPart(PartWithEdge):
         x = self.knots.x[first_of_cell]
         release = self.curve.arrival(x)
         end = np.minimum(self.approximate_stick_time(x), horizon(x))
-        x, release, end = np.array([x, release, end])[:, end > release]
+        has_slipped = end > release
+        x, end = x[has_slipped], end[has_slipped]
+        release = release[has_slipped]
         slip_at_middle = self.field("slip", x, 0.5 * (release + end))
         slip_at_end = self.field("slip", x, end)
         smallest_gain = np.minimum(slip_at_middle, slip_at_end - slip_at_middle)
         falls = smallest_gain < -FALL_TOLERANCE * np.max(slip_at_end, initial=0.0)
-        return [Point(*point) for point in np.stack([x, release], axis=1)[falls].tolist()]
+        points = zip(x[falls].tolist(), release[falls].tolist(), strict=True)
+        return [Point(*point) for point in points]
 
     def largest_velocity(self, until: float, horizon: Callable) -> float:
         """Return the largest slip velocity of the part, until a time and before a horizon.

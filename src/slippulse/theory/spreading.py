@@ -72,7 +72,7 @@ class Stretch:
     curves: dict[float, Curve] = field(default_factory=dict)
 
     def curve(self, side: float = RIGHT) -> Curve:
-        """Return the panels as one curve, with a side turned to the right.
+        """Return the panels as one curve, with a side (LEFT = -1, RIGHT = +1) turned to the right.
 
         If the left side is turned to the right, the curve is the mirror image at x = 0.
         """
@@ -117,7 +117,9 @@ class Stretch:
                 if s > -1.0:
                     kept_panels.append(panel.left_part(float(s), x_of_cut))
         time = kept_panels[-1].time_ends[1] if kept_panels else 0.0
-        self.panels, self.curves = turned_to_right(side, kept_panels), {}
+        self.panels = turned_to_right(side, kept_panels)
+        # The curves that were made from the old panels are no longer valid.
+        self.curves = {}
         self.ends[side] = Point(x, time)
         self.restarts[side] = [start for start in self.restarts[side] if side * start < x_of_cut]
 
@@ -186,14 +188,15 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
     if not nucleations:
         allowed = "a profile that reaches 1 somewhere"
         raise ValueError(f"prestress: below 1 everywhere; allowed: {allowed}")
-    # The first and the last interval have a neighbour at infinity.
-    with_neighbours = [(-np.inf, -np.inf), *nucleations, (np.inf, np.inf)]
     stretches = []
-    for number, (left, right) in enumerate(nucleations, start=1):
-        _, end_before = with_neighbours[number - 1]
-        start_after, _ = with_neighbours[number + 1]
+    for number, (left, right) in enumerate(nucleations):
+        is_first = number == 0
+        is_last = number == len(nucleations) - 1
+        # The nearest released positions on both sides of this interval.
+        end_before = -np.inf if is_first else nucleations[number - 1][1]
+        start_after = np.inf if is_last else nucleations[number + 1][0]
         ends = {LEFT: Point(left, 0.0), RIGHT: Point(right, 0.0)}
-        # A position on the left, turned to the right, has the opposite sign.
+        # For the left front, x is mirrored: `Stretch` treats both fronts as right fronts.
         stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
             # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
@@ -276,6 +279,7 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     Both are cut at the position that their fronts reach at the same time. So each position belongs
     to the front that arrives there first.
     """
+    # If their known paths do not overlap, the fronts have not met.
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):
         return None
     left_curve, right_curve = left.curve(), right.curve()
@@ -291,8 +295,8 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     if not (delay_of_left(low) <= 0.0 <= delay_of_left(high)):
         return None
     x = root_between(delay_of_left, low, high, xtol=1e-14)
-    # If one of the fronts is slow where they meet, the curve has a restart there. A slow front
-    # takes longer for the last distance than a wave, whose speed is 1.
+    # Like a slow front that becomes fast again, a slow front that meets another one is a restart of
+    # the curve. It takes longer for the last distance than a wave, whose speed is 1.
     left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
     right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
     durations = np.abs(np.diff([left_times, right_times]))

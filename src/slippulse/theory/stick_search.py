@@ -60,13 +60,15 @@ class StickSearch:
     step: float
     until: float
 
-    def find_stick_times(self, x: np.ndarray, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
+    def find_stick_times(
+        self, x: np.ndarray, release: np.ndarray, wave_arrivals: np.ndarray
+    ) -> np.ndarray:
         """Return the stick times of positions x, which are released at the times ``release``.
 
-        NaN if a block does not stick before the final time. waves has the times at which waves
-        arrive, with a row for each position and a column for each wave.
+        NaN if a block does not stick before the final time. wave_arrivals has the times at which
+        waves arrive, with a row for each position and a column for each wave.
         """
-        times = self._sample_times(release, waves)
+        times = self._sample_times(release, wave_arrivals)
         stick_times = np.full(x.shape, np.nan)
         # The samples are computed in batches, one after another in time. A batch is examined
         # together with the two samples before it, because a minimum is found from three samples.
@@ -97,16 +99,16 @@ class StickSearch:
             sliding = sliding[~np.isfinite(zeros) & (time[:, -1] < self.until)]
         return stick_times
 
-    def _sample_times(self, release: np.ndarray, waves: np.ndarray) -> np.ndarray:
+    def _sample_times(self, release: np.ndarray, wave_arrivals: np.ndarray) -> np.ndarray:
         """Return the times of the samples, [position, time]: equal steps and arrivals of waves.
 
-        release has the time of the release of each position. waves has the times at which waves
-        arrive, with a row for each position, NaN for a wave that never arrives. The times of a
-        position are sorted, and repeat the final time at the end, so that all rows are equally long
-        and can be divided into batches of BATCH_SIZE samples.
+        release has the time of the release of each position. wave_arrivals has the times at which
+        waves arrive, with a row for each position, NaN for a wave that never arrives. The times of
+        a position are sorted, and repeat the final time at the end, so that all rows are equally
+        long and can be divided into batches of BATCH_SIZE samples.
         """
         longest = self.until - np.min(release, initial=self.until)
-        sample_count = release.size * (longest / self.step + BATCH_SIZE + waves.shape[1])
+        sample_count = release.size * (longest / self.step + BATCH_SIZE + wave_arrivals.shape[1])
         if sample_count > MAX_SAMPLES:
             raise ValueError(
                 f"duration: {self.until:g}, for which the slip velocity must be evaluated at"
@@ -116,7 +118,7 @@ class StickSearch:
         batch_count = longest // (BATCH_SIZE * self.step) + 1
         steps = self.step * np.arange(1, BATCH_SIZE * batch_count + 1)
         final_times = np.full((release.size, BATCH_SIZE), self.until)
-        times = np.concatenate([release[:, None] + steps, waves, final_times], axis=1)
+        times = np.concatenate([release[:, None] + steps, wave_arrivals, final_times], axis=1)
         # Right after the release du/dt is 0 apart from rounding, so that no sample is taken there.
         # A wave that never arrives (NaN) is left out as well, because NaN is not late enough.
         is_late_enough = times > release[:, None] + FIRST_SAMPLE * self.step

@@ -305,7 +305,8 @@ class PartWithEdge(Part):
         new_knots = self._make_knots(x, self._exact_stick_time(x, knots))
         middle_knots = new_knots.select(np.s_[inner_piece_starts.size :])
         refined = knots.joined(new_knots)
-        self._mark_slow_intervals(refined, piece_starts)
+        # The kinds of some knots are changed in place.
+        self._set_kind_of_slow_intervals(refined, piece_starts)
         is_unresolved = ~knots.predicts_middle(halved, middle_knots)
         unresolved_halves = [knots.x[halved[is_unresolved]], middles[is_unresolved]]
         pieces = np.searchsorted(refined.x, piece_starts.ravel())
@@ -320,7 +321,7 @@ class PartWithEdge(Part):
         Intervals that are too short are not divided.
         """
         has_jump = knots.has_jump(k)
-        # Only one of the two knots sticks before the final time.
+        # Only one of the two knots of the interval sticks before the final time.
         reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
         min_length = np.full(k.size, MIN_INTERVAL * self.scale)
         min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
@@ -345,19 +346,18 @@ class PartWithEdge(Part):
         is_kept = np.full(k.size, True)
         jumps = k[knots.has_jump(k)]
         for jump, before_jump in zip(jumps, knots.ends_before_jumps(jumps), strict=True):
-            # At this time at the latest, a wave from the jump is back at the knot before the jump.
+            # At this time at the latest, a wave from the jump arrives at the knot before the jump.
             # The edge ran from this knot to the jump faster than the waves, whose speed is 1. So
             # neither the way there nor the way back takes longer than the length of the interval.
             length = knots.x[jump + 1] - knots.x[jump]
             latest_return = knots.stick[before_jump] + 2.0 * length
-            # A wave that leaves the knot before the jump at this time arrives at another knot at
-            # the moment at which the other knot sticks.
-            departure_time = knots.stick - np.abs(knots.x - knots.x[before_jump])
-            is_outside = departure_time < latest_return
-            is_kept &= is_outside[k] | is_outside[k + 1]
+            # From there the wave runs on to the other knots.
+            wave_arrival = latest_return + np.abs(knots.x - knots.x[before_jump])
+            sticks_before_wave = knots.stick < wave_arrival
+            is_kept &= sticks_before_wave[k] | sticks_before_wave[k + 1]
         return k[is_kept]
 
-    def _mark_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
+    def _set_kind_of_slow_intervals(self, knots: Knots, piece_starts: np.ndarray) -> None:
         """Change the kind of knots to SLOWER_THAN_WAVES where a slow edge looked like a jump.
 
         An interval in which the edge takes longer than a wave seems to have a jump, and was cut
@@ -509,9 +509,10 @@ class PartWithEdge(Part):
         return first
 
     def _first_at_knots(self) -> FirstStick | None:
-        """Return where and when something first sticks, by the knots; None if no knot sticks.
+        """Return where and when something first sticks, as far as the knots show it.
 
-        This is at a knot, or at a minimum of the trailing edge between two knots.
+        This is at a knot, or at a minimum of the trailing edge between two knots. None if no knot
+        sticks.
         """
         knots = self.knots
         has_stuck = knots.kind != SLIDING
@@ -529,7 +530,7 @@ class PartWithEdge(Part):
         earliest = np.minimum(knots.stick[:-1], knots.stick[1:]) - 0.5 * np.diff(knots.x)
         may_contain_first = self._may_have_minimum(error) & (earliest < first.time)
         for k in np.flatnonzero(may_contain_first).tolist():
-            minimum = self._minimum_between(*knots.x[[k, k + 1]].tolist())
+            minimum = self._minimum_between(float(knots.x[k]), float(knots.x[k + 1]))
             # A difference that is a rounding error does not count.
             if minimum and minimum.time < first.time - ROUNDING_ERROR:
                 first = minimum

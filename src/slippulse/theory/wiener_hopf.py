@@ -123,7 +123,8 @@ def log_prestress(
         log_at_0 = np.log(2.0 * q_at_0 / (np.sqrt(1.0 + q_at_0**2) + q_at_0))
         log_tau = (0.5 - angle / np.pi) * log_at_0 + log_tau
     else:
-        # `log_factor` returned the difference from b = 1, where M_+(0) = 1 - 1/v = (v - 1)/v.
+        # Without leaf springs `log_factor` leaves out the logarithm at b = 1. For it, the exact
+        # M_+(0) = 1 - 1/v = (v - 1)/v is added.
         log_tau += np.log(excess_speed / (1.0 + excess_speed))
     if release == "elastic" and np.any(damping_ratio > 0.0):
         log_at_iy = _log_m_plus_at_iy(
@@ -148,7 +149,7 @@ def _log_m_plus_at_iy(
     """Return ln M_+(i y) of each front, where y = 1/(b v) and b is the damping ratio.
 
     It is the integral of ln(1 - rho e^{iz})/(z - i y) along the contour, divided by 2 pi i.
-    log_values, the result of `log_factor`, has this logarithm at the nodes of the contour.
+    log_values, the result of `log_factor`, are the values of this logarithm at the nodes.
     excess_speed is v - 1.
     """
     # Without damping the caller does not use the result. The division must only not fail.
@@ -156,7 +157,8 @@ def _log_m_plus_at_iy(
     z_minus_iy = contour.z - 1j * y[:, None]
     log_at_iy = np.sum(log_values * (contour.weight / z_minus_iy), axis=1).imag / np.pi
     if gamma_dx2 == 0.0:
-        # `log_factor` returned the difference from b = 1, where M_+(i y) = 1 - (1 - e^{-y})/(v y).
+        # Without leaf springs log_values leave out the logarithm at b = 1. For it, the exact
+        # M_+(i y) = 1 - (1 - e^{-y})/(v y) is added.
         numerator = excess_speed * y + _exp_minus_two_terms(-y).real
         log_at_iy += np.log(numerator / ((1.0 + excess_speed) * y))
     return log_at_iy
@@ -171,14 +173,14 @@ def _choose_contour(
     or a branch point of the symbol can lie. From there to CONTOUR_REACH, panels have equal lengths
     in ln |z|. excess_speed is v - 1.
     """
-    # A lower bound of (1 + b) |w| at these points. At the branch points of r it is 1. Nearer to 0
-    # there may be branch points of q, at sqrt(g) or, with drag, g/|a|. Without leaf springs, a zero
-    # of the symbol may be nearer to 0, at v - 1.
-    smallest_w = np.minimum(np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed, 1.0)
+    # A lower bound of (1 + b) |w| at these points. It is 1 for the branch points of r. With leaf
+    # springs, branch points of q may be nearer to 0: sqrt(g) or, with drag, g/|a|. Without leaf
+    # springs, a zero of the symbol may be nearer to 0: v - 1.
+    bound = np.minimum(np.sqrt(gamma_dx2) if gamma_dx2 > 0.0 else excess_speed, 1.0)
     if alpha_dx:
-        smallest_w = min(smallest_w, gamma_dx2 / abs(alpha_dx))
-    # w is v z.
-    smallest_z = np.min(smallest_w / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
+        bound = min(bound, gamma_dx2 / abs(alpha_dx))
+    # The same bound for |z|, because w is v z.
+    smallest_z = np.min(bound / ((1.0 + damping_ratio) * (1.0 + excess_speed)))
     panel_count = int(np.ceil(np.log(2.0 * CONTOUR_REACH / smallest_z) / LOG_PANEL_LENGTH))
     angle = _contour_angle(excess_speed, gamma_dx2, alpha_dx)
     return make_contour(panel_count, angle), angle
@@ -262,8 +264,8 @@ def _exponent_near_zero(
     """Return i z + ln rho at nodes z near 0, computed without cancellation, and 0 at other nodes.
 
     is_close is True at the nodes near 0. With h = q/r, ln rho is -2 artanh h. So the result is
-    (i z - 2 h) - 2 (artanh h - h). With w = v z and W = sqrt(w^2 - g - i a w) = -2 i q, the first
-    bracket is i times
+    (i z - 2 h) - 2 (artanh h - h). With w = v z (iw is i w), g = gamma_dx2, a = alpha_dx, and
+    W = sqrt(w^2 - g - i a w) = -2 i q, the first bracket is i times
 
         lag = z - W/r = (z - w) + (w - W) + W (r - 1)/r.
     """

@@ -66,10 +66,13 @@ def places_of(entries: Mapping[str, Mapping], sentences: Sequence[Mapping]) -> d
 
 
 def coverage(sentences: Sequence[Mapping]) -> dict[str, int]:
-    """Return the number of sentences for each of REASONS, and the total as "all"."""
+    """Count the sentences of the paper that claims test, and those that none tests, by reason.
+
+    The keys are those of REASONS, and "all" for the total.
+    """
     counts: Counter[str] = Counter()
     for sentence in sentences:
         reason = str(sentence.get("why_none", "tested"))
-        # The reason "repeats ID" has the id of the repeated sentence.
+        # In "repeats ID", ID is the id of the repeated sentence.
         counts["repeats" if reason.startswith("repeats ") else reason] += 1
     return {reason: counts[reason] for reason in REASONS} | {"all": len(sentences)}

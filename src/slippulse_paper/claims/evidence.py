@@ -130,7 +130,10 @@ class Evidence:
     def __init__(
         self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
-        """Keep what is given, and prepare the tables of three lattices for each simulation."""
+        """Keep the arguments, and prepare the tables of three lattices for each simulation.
+
+        They are explained at the class.
+        """
         self.tables = tables
         self.entries = entries
         self.steady = steady

@@ -24,7 +24,7 @@ def findings(
 ) -> list[dict]:
     """Return each finding with its id, its numbers by name, its text and its source tables.
 
-    damping_ratio : damping ratio of the figures, which expressions may use as the column figures
+    damping_ratio : damping ratio of the figures, which expressions may use under the name figures
     entries : text, source and expressions of each finding, from manuscript/claims.yaml
     """
     all_findings = []
@@ -47,7 +47,7 @@ def all_numbers(
 
     The result is empty if a changed configuration has no runs for some of the numbers.
 
-    damping_ratio : damping ratio of the figures, which expressions may use as the column figures
+    damping_ratio : damping ratio of the figures, which expressions may use under the name figures
     expression_groups : arguments of `numbers`, one mapping for each table
     """
     values: dict[str, float] = {}
@@ -69,7 +69,7 @@ def numbers(
 ) -> dict[str, float]:
     """Evaluate expressions over the columns of one table; empty if no row is selected.
 
-    damping_ratio : damping ratio of the figures, which expressions may use as the column figures
+    damping_ratio : damping ratio of the figures, which expressions may use under the name figures
     table : name of the table. If it is a simulation that has a grid study, its rows are those of
         `Evidence.finest`: the results of the grid study are added, and flagged runs are left out
     take : expressions by the name of the number
@@ -96,9 +96,9 @@ def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
         table = table.set_index(["left", "width", "gamma", "release", "dx", "damping_ratio"])
         # One row for each scene, and one column for each damping ratio, in ascending order.
         lengths = table["transition_length"].unstack()
-        if lengths.empty:
+        if 0.0 not in lengths:
             return {}
-        most_damped, undamped = lengths.iloc[:, -1], lengths.iloc[:, 0]
+        most_damped, undamped = lengths.iloc[:, -1], lengths[0.0]
         ratios = most_damped / undamped
         values[f"{boundary}_change"] = float(ratios.median())
         values[f"{boundary}_runs"] = float(ratios.count())

@@ -150,7 +150,8 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
     crossings, held_crossings = sliding_in_crossings(free), sliding_in_crossings(held)
     longer = times_longer_with_free_top(rows)
     deviations = (crossings - 1.0).abs()
-    # The uncertainty is the largest change of a run from the second finest to the finest grid.
+    # The sliding time is as uncertain as the pulse width, which changes from the second finest to
+    # the finest grid. The uncertainty is the largest of these changes, in crossings.
     uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
     return Approximate(
         tolerance=evidence.tolerance(id),
@@ -245,19 +246,20 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 
 
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
-    """Return the pulses of the part far on their finest grids, with columns on how they split.
+    """Return the pulses of the part far at the last station, with columns on how they split.
 
-    split_at, coarse_split_at : position of the split on the finest and on the second finest grid;
-        NaN if there is none. The unit is H at the largest gamma. At a smaller gamma it is longer,
-        by the same factor as the position of the last station.
+    split_at, coarse_split_at : position of the split on the finest and on the second finest grid of
+        the pulse; NaN if there is none. The unit is H at the largest gamma. At a smaller gamma it
+        is longer, by the same factor as the distance of the last station.
     cells_in_weakening : number of cells in gamma d_c, the length over which the strength falls
     is_narrow : True at the largest gamma, at which pulses are narrowest
     is_steady : True if `steady_on_two_grids` is True at this tolerance
     """
     rows = rows_at_station(evidence, LAST)
     followed = finest_rows(rows, "far")
-    unit = followed["sample_position"] / followed["sample_position"].min()
     on_second_finest = finest_rows(rows, "far", coarser=1).reindex(followed.index)
+    # The unit of positions. The last station is nearest at the largest gamma.
+    unit = followed["sample_position"] / followed["sample_position"].min()
     gamma = followed.index.get_level_values("gamma")
     weakening = followed.index.get_level_values("weakening")
     return followed.assign(
@@ -276,8 +278,12 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
         part far, and of those that split
     near_distance, distance : distance over which the pulses of the parts pulse and far were
         followed, at the largest gamma
-    narrow_..., wide_... : of pulses that split at the largest gamma, and at a smaller gamma
-    split_..., coarse_split_... : range of the positions in `followed_pulses`, at the largest gamma
+    narrow_gamma, narrow_energy : largest gamma and fracture energy of pulses that split. Pulses at
+        the largest gamma are narrow, and the others are wide (wide_gamma, wide_energy)
+    split_..., coarse_split_... : range of the positions at which narrow pulses split, on the finest
+        and on the second finest grid
+    wide_split_..., wide_coarse_splits : range of these positions for wide pulses on the finest
+        grid, and number of wide pulses that split on the second finest grid
     step_... : of one pulse that belongs to the part step; the part far has it, too, but it is not
         counted
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
@@ -356,7 +362,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
     pulses = finest_rows(rows, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
     deviations = (ratio - 1.0).abs()
-    # The uncertainty is the largest change of a run from the second finest to the finest grid.
+    # The uncertainty is the largest change of the ratio from the second finest to the finest grid.
     uncertainty = float((change_by_refinement(rows, "pulse", "pulse_width") * ratio).max())
     speed_ratio = pulses["speed"] / pulses["paper_speed"]
     slip_ratio = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
@@ -473,7 +479,6 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
     varied = with_varied_energy(pulses)
-    thinnest = with_smallest_gamma(varied)
     numbers = {
         "pulses": float(len(pulses)),
         "level": float(varied.index.get_level_values("tau0")[0]),
@@ -481,7 +486,7 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         "brittle_energy": BRITTLE_ENERGY,
         "level_spread": spread_with_level(pulses),
         "formula_speed": float(varied["paper_speed"].max()),
-        "thinnest_formula": float(thinnest["paper_pulse_width"].max()),
+        "thinnest_formula": float(with_smallest_gamma(varied)["paper_pulse_width"].max()),
     }
     quantities = pulse_quantities(pulses)
     # The time of the first stick, divided by the time in which a shear wave runs to the top and
@@ -529,24 +534,26 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     slip_over_bound : slip divided by the largest slip that the energy balance allows
     waves : fraction of the released energy that leaves as waves
 
-    The others are for the pulses of `with_varied_energy`:
+    The others are for the pulses that differ only in gamma and fracture energy:
 
     energy, speed : fracture energy, and front speed
     width : width by the paper's formula divided by the pulse width
     slip : slip divided by the slip by the paper's formula
     brittle_speed, brittle_slip : speed and slip, for the smallest fracture energy
     brittle_crossing : crossing, for fracture energies below BRITTLE_ENERGY
-    line_speed, line_width, line_slip : for pulses in one dimension with the same friction and with
-        damping; width and slip are divided by those of the paper's formulas
+    line_speed, line_width, line_slip : speed, width and slip of pulses in one dimension with the
+        same friction and with damping; width and slip are divided by those of the paper's formulas
     less_damped : width in one dimension with the smaller damping, divided by the width with the
         larger one
-    thinnest_width : pulse width, for the smallest gamma
+    thinnest_width : pulse width for the smallest gamma, at which the layer is thinnest compared
+        with the pulses
     """
     varied = with_varied_energy(pulses)
     brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
     most_brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
     gamma = pulses.index.get_level_values("gamma")
-    # A slip of s times the formula releases the static energy 4 s (1 - s), in units of G_0.
+    # At s times the slip of the formula, the layer releases the energy 4 s (1 - s). The unit is the
+    # largest energy that it can release, by which the fracture energy is divided, too.
     relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
     released_energy = 4.0 * relative_slip * (1.0 - relative_slip)
     return {
@@ -598,11 +605,11 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
     far_speed, far_slip : largest relative change of speed and slip between the last two stations,
-        of pulses that stay whole
+        of pulses that do not split
     from_near_slip : largest relative change of their slip between the first and the last station
     drawn_split : see `split_of_drawn_pulse`
 
-    The numbers of `split_pulses` are returned, too.
+    The numbers of `split_pulses`, which say how many pulses split and where, are returned, too.
     """
     numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
     numbers["drawn_split"] = split_of_drawn_pulse(evidence)
@@ -611,6 +618,7 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
     is_whole = steady_on_two_grids(evidence, "far", tolerance=np.inf).eq(True)
     speed_change = change_with_distance(evidence, "speed", SECOND_LAST)
     slip_change = change_with_distance(evidence, "pulse_slip", SECOND_LAST)
+    # The part far has three stations.
     slip_change_from_first = change_with_distance(evidence, "pulse_slip", THIRD_LAST)
     return numbers | {
         "far_speed": float(speed_change[is_whole].max()),

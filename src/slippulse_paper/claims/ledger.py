@@ -109,6 +109,7 @@ class Entry(SimpleNamespace):
         # The deviation of an estimate is the median over all runs.
         text = "median " if self.kind == "approximate" else ""
         text += f"{percent(self.deviation)}, tolerance {setting(100.0 * self.tolerance)} %"
+        # A claim may have a requirement in addition to the tolerance, in words (asked).
         return f"{text}; {self.asked}" if self.asked else text
 
     def _sentence_on_deviation(self) -> str:
@@ -155,7 +156,7 @@ class QualitativeEntry(Entry):
         return ", ".join(parts)
 
     def _deviation_and_tolerance(self) -> str:
-        """Return the requirement, with its tolerance if it has one."""
+        """Return the requirement of the claim (asked), with its tolerance if it has one."""
         text = self.asked or "no run may contradict"
         tolerance = setting(100.0 * self.tolerance)
         return f"{text} (tolerance {tolerance} %)" if self.tolerance else text

@@ -96,7 +96,8 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
 def rough_numbers(evidence: Evidence) -> dict[str, float]:
     """Return the numbers of the findings on rough pre-stress; empty without ensembles.
 
-    confidence, tail_... : from runs over a long distance
+    confidence, tail_... : from runs over a long distance, confidence level and interval of the
+        exponent with which the survival of pulses falls as a power of the distance
     rough_..., quiet_..., above_... : columns of the roughest ensemble under a stress boundary, of
         the smoothest, and of the one with the highest level
 
@@ -226,13 +227,14 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
 
 def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:
-    """Return how far before the balance position pulses die on the coarsest and finest lattice.
+    """Return how far pulses die before the balance position, at which they die by theory.
 
-    Also return the spacings dx of these lattices. Distances are medians over all pulses.
+    There is a median distance over all pulses for the coarsest and one for the finest lattice. Also
+    return the spacings dx of these lattices.
     """
     by_spacing = checks[checks["part"] == "balance"].sort_values("dx")
     finest, coarsest = by_spacing.iloc[0], by_spacing.iloc[-1]
-    # In these rows the column change has the distance.
+    # In these rows the column change has the median distance.
     return {
         "balance_coarse": coarsest["change"],
         "balance_fine": finest["change"],

@@ -147,10 +147,10 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 
 @cache
 def transitions(evidence: Evidence) -> list[Runs]:
-    """Return runs under a displacement boundary, for both criteria of T_trans.
+    """Return runs under a displacement boundary, for both ends of the transition (criteria).
 
-    Exact solutions are measured at the first stick only. Lattices are also measured at the slip by
-    which the paper defines T_trans.
+    The transition ends at the first stick, or at the slip by which the paper defines T_trans. Exact
+    solutions are measured at the first stick only.
     """
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
@@ -366,7 +366,7 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
         runs, varied_columns = arrests(evidence), ["left"]
 
     def judge(tables: list[pd.DataFrame]) -> Equation:
-        """Fit both exponents to the runs of one combination, and judge the one farther from 1."""
+        """Fit T and L as powers of their estimates, and judge the exponent farther from 1."""
         exponents = {}
         for quantity, symbol in SYMBOLS.items():
             exponents[symbol] = fit_exponent(
@@ -396,7 +396,7 @@ def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
-        """Judge both fronts in the runs of one combination, and return the worse result."""
+        """Compare the mean speeds of both fronts with 1, and return the worse result."""
         left = evidence.approximate(id, tables, measured="covered / time", predicted="1")
         # The length is the distance between the fronts, and the left front has covered a part of
         # it. The right front has covered the rest.
@@ -419,7 +419,7 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge the runs of one combination; a tolerance above 0 limits the additional time."""
+        """Judge if the arrest takes longer than at speed 1; a tolerance limits how much longer."""
         return replace(
             takes_longer(tables),
             extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
@@ -463,6 +463,8 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
         if has_ratio.any():
             runs.append(lattice_runs([table[has_ratio] for table in tables]))
+    # In a changed configuration, no run may have these ratios. All runs are then judged together.
+    runs = runs or [Runs({"solution": "lattice"}, tables)]
     judge = partial(judge_arrest_distance, evidence, id)
     over_all_runs = judge(tables)
     ratio = ratios(finest, "last_release_distance", "balance_distance")
@@ -508,6 +510,9 @@ def transition_diverges(evidence: Evidence, id: str) -> Qualitative:
     The two finest lattices must agree.
     """
     finest, middle, _ = evidence.lattices("scaling_displacement")
+    if finest.empty:
+        # All runs are flagged, and so the claim is not testable.
+        return Qualitative(decided=[])
     on_finest, on_middle = divergence_by_level(finest), divergence_by_level(middle)
     answers = agreed_answers(
         [level.diverges for level in on_finest], [level.diverges for level in on_middle]

@@ -13,13 +13,13 @@ from collections.abc import Iterator
 def runs_of(chunk: int, chunk_count: int, run_count: int) -> Iterator[int]:
     """Yield the numbers of the runs in one chunk of a sweep.
 
-    Chunks are numbered from 1, and runs from 0.
+    In each round every chunk gets one run, and a random chunk gets the first one. Chunks are
+    numbered from 1, and runs from 0.
     """
-    first_runs_of_rounds = range(0, run_count, chunk_count)
-    for dealing_round, first_run in enumerate(first_runs_of_rounds):
+    for round_number, first_run in enumerate(range(0, run_count, chunk_count)):
         # Every version of Python gives the same random numbers for the same seed.
-        first_chunk = 1 + int(chunk_count * random.Random(dealing_round).random())
-        # The chunks get the runs of this round in turn, and chunk 1 follows the last chunk.
+        first_chunk = 1 + int(chunk_count * random.Random(round_number).random())
+        # The chunks get their runs in turn, and chunk 1 follows the last chunk.
         turn_of_chunk = (chunk - first_chunk) % chunk_count
         run = first_run + turn_of_chunk
         # The last round may be incomplete.

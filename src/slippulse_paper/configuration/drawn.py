@@ -49,7 +49,8 @@ CONDITIONS: dict[str, Callable[[Run], bool]] = {
 def drawing_problems(config: Configuration, draws: Mapping[str, Mapping[str, str]]) -> list[str]:
     """Return a line for each simulation of a figure if the figure can draw none of its runs.
 
-    ``draws`` has the DRAWS of each figure: a key of CONDITIONS for each of its simulations.
+    ``draws`` has the simulations of each figure, and for each of these the condition that one of
+    its runs must meet, in the words of CONDITIONS.
     """
     accuracy, simulations = accuracy_of(config), all_simulations(config)
     problems = []

@@ -107,7 +107,7 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
     """Raise ValueError if the pulse has far too few blocks in every scene."""
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Computing the width takes time. Scenes with wide pulses come first, so that one is usually
-    # enough.
+    # enough. A pulse has many blocks if sqrt(gamma) dx is small and the pre-stress is large.
     widest_first = sorted(
         scenes, key=lambda scene: (scene.gamma * scene.dx**2, -scene.prestress.left)
     )
@@ -142,7 +142,8 @@ def _pulse_blocks(scene: Scene) -> float:
 def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     """Return an upper bound on the cost of one chunk of a sweep.
 
-    Every run of the chunk counts as much as the most expensive run at the ends of the lists.
+    Only the runs with the smallest or largest value of each list are examined. Every run of the
+    chunk counts as much as the most expensive one of these.
     """
     scenes, samples = expand(with_promised_spacings(with_ends_of_lists(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]

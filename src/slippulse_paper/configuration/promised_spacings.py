@@ -24,7 +24,7 @@ def with_promised_spacings(simulation: Mapping) -> Mapping[str, Any]:
     # With other schemes, the time step causes an error that a grid study does not show.
     scheme = simulation["scheme"]
     check_that(scheme == "localised", "scheme", scheme, "'localised' if accuracy is given")
-    # NaN means that the simulation sets its own spacing.
+    # NaN means that the simulation sets its own spacing, or beta in place of the damping ratio.
     if math.isnan(promise):
         return simulation
     laws = simulation.get("friction", [])

@@ -240,7 +240,7 @@ def _range(schema: Mapping) -> str:
     for key in LIMIT_SIGNS:
         if key in schema:
             # Exponents are written without plus signs and leading zeros.
-            limits[key] = re.sub(r"e\+?(-?)0", r"e\1", f"{schema[key]:g}")
+            limits[key] = re.sub(r"e\+?(-?)0?", r"e\1", f"{schema[key]:g}")
     if {*limits} == {"minimum", "maximum"}:
         return f"from {limits['minimum']} to {limits['maximum']}"
     return " and ".join(f"{LIMIT_SIGNS[key]} {limit}" for key, limit in limits.items())

@@ -178,7 +178,7 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
 
 
 def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
-    """Return a resolved simulation with only the smallest and largest value of each ORDERED list.
+    """Return a resolved simulation with only the smallest and largest number of each list.
 
     If any run is refused or expensive, one at these values is, too. Of an ensemble of rough
     profiles, the first and the last seed are kept. The job checks all seeds before it simulates.
@@ -187,6 +187,7 @@ def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
     if "profiles" in ends:
         ends["profiles"] = ends_of_ensembles(ends["profiles"])
     if "beyond" in ends:
+        # This mapping has a list of levels, which the pre-stress has beyond a step.
         ends["beyond"] = with_ends_of_lists(ends["beyond"])
     for key in ORDERED:
         if isinstance(ends.get(key), list):

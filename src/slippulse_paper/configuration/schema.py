@@ -671,7 +671,10 @@ class Preset(Block):
 
     @model_validator(mode="after")
     def _check_factors(self) -> Self:
-        """Raise ValueError if the spacings of the grid study are too close to each other."""
+        """Raise ValueError if spacings of the grid study are too close to each other.
+
+        The spacing of the preset is multiplied by each of the two factors in ``coarser``.
+        """
         # At nearly equal spacings a number is nearly the same, even if its error is large.
         first, second = sorted(self.coarser)
         # The margin 1e-9 is for rounding errors.
@@ -848,7 +851,10 @@ class Configuration(Block):
 
     @model_validator(mode="after")
     def _check_names(self) -> Self:
-        """Raise ValueError if a name is unknown or used twice, or if an accuracy is impossible."""
+        """Raise ValueError for names that are unknown or used twice.
+
+        The key `accuracy` is refused unless the scheme is 'localised'.
+        """
         check_name("preset", self.preset, self.presets, ", ".join(self.presets))
         if self.accuracy is not None:
             scheme = self.model.scheme
@@ -876,7 +882,7 @@ class Configuration(Block):
     def _check_reading(self, key: str, reading: Reading) -> None:
         """Raise ValueError if the number that a reading is compared with is not measured.
 
-        ``key`` is the dotted key of the reading.
+        A reading is a number that was read off a published figure. ``key`` is its dotted key.
         """
         # The kind of data that each measured column needs.
         record_for = dict(RECORD_FOR)

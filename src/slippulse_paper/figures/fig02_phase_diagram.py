@@ -110,7 +110,7 @@ def draw(table: pd.DataFrame) -> Figure:
     imposed.set(xticks=(-1, -0.5, 0, 0.5, 1), xlabel=r"pre-stress on both sides $\tau_0$")
     panel_letter(held, "a")
     draw_profiles(right_half, profiles)
-    legend_below(figure, legend_entries(table), 3)
+    legend_below(figure, legend_entries(table), columns=3)
     return figure
 
 

@@ -121,7 +121,7 @@ def draw(table: pd.DataFrame) -> Figure:
         side.suptitle(f"{space_time.run_title(rows_by_role)}\n{definition}")
     # The legend has an entry for everything that either panel shows.
     handles = style.legend_handles(figure.axes)
-    style.legend_below(figure, handles, len(handles))
+    style.legend_below(figure, handles, columns=len(handles))
     return figure
 
 
@@ -138,6 +138,7 @@ def draw_transition(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
             axes.plot(
                 rows_by_role[role]["time"], rows_by_role[role]["position"], label=label, **look
             )
+    # The column value has the distance between both fronts.
     left_front = rows_by_role["measured"].iloc[0]
     time, left, length = left_front[["time", "position", "value"]]
     # A run that ends before its transition has no arrows.

@@ -67,10 +67,11 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     drawn_values = spread_values(runs[second_column], LINE_COUNT)
     few_runs = runs[runs[second_column].isin(drawn_values)]
     box = (0.1, 0.6, 0.34, 0.31)
+    columns = {"x_column": level_column, "line_column": second_column}
     for axes, quantity in ((length_axes, "length"), (time_axes, "time")):
         scaling.draw_collapse(axes, runs, quantity, colours)
-        scaling.ratio_inset(axes, box, few_runs, quantity, level_column, second_column)
-    scaling.draw_ratio(ratio_axes, few_runs, "length", level_column, second_column)
+        scaling.ratio_inset(axes, box, few_runs, quantity, **columns)
+    scaling.draw_ratio(ratio_axes, few_runs, "length", **columns)
     length = QUANTITIES["length"]
     ratio_axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${length}$ / formula")
     # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
@@ -89,7 +90,7 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:
     """Add an inset with the pre-stress of a few runs: some levels, with the narrowest Gaussian.
 
-    level_column : name of the colour scale of the levels, tau_0 or left
+    level_column : name of the level, tau_0 or left, which has a colour scale
     """
     has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))
     narrow = runs[has_drawn_level & (runs["width"] == runs["width"].min())]

@@ -64,28 +64,28 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     which slip is multiplied in the drawing.
     """
     panels = []
-    for name in ROW_DISTANCES:
-        run = point(data[f"burridge_knopoff_{name}"], 0)
+    for boundary in ROW_DISTANCES:
+        run = point(data[f"burridge_knopoff_{boundary}"], 0)
         rows = block_states(run)
         rows["scale"] = displacement_scale(rows)
         # Only under a stress boundary, a block stops the left front.
-        rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (name == "stress")
+        rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (boundary == "stress")
         parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
-        panels.append(rows.assign(panel=name, **parameters))
+        panels.append(rows.assign(panel=boundary, **parameters))
     return pd.concat(panels, ignore_index=True)
 
 
 def block_states(run: xr.Dataset) -> pd.DataFrame:
     """Return slip, velocity, pre-stress and state of each block in view, at each drawn instant.
 
-    The column row numbers the instants from 0 on.
+    The column row numbers the instants from 0 on, and instant has their names.
     """
     first, last = view(run)
     # The springs of one more block on each side are partly in view.
     shown = run.sel(sample_position=slice(first - 1.5, last + 1.5))
     x = shown["sample_position"].values
     parts = []
-    for row, (instant, sample) in enumerate(instants(run)):
+    for row, (instant_name, sample) in enumerate(instants(run)):
         at_instant = shown.isel(sample_time=sample)
         slip, velocity = at_instant["sample_slip"].values, at_instant["sample_velocity"].values
         state_without_motion = np.where(slip > 0.0, "stuck after sliding", "at rest")
@@ -93,7 +93,7 @@ def block_states(run: xr.Dataset) -> pd.DataFrame:
         blocks["prestress"] = prestress_from(run.attrs)(x)
         blocks["state"] = np.where(velocity > 0.0, "sliding", state_without_motion)
         time = float(at_instant["sample_time"])
-        parts.append(blocks.assign(row=row, instant=instant, time=time))
+        parts.append(blocks.assign(row=row, instant=instant_name, time=time))
     return pd.concat(parts, ignore_index=True)
 
 
@@ -207,7 +207,7 @@ def draw(table: pd.DataFrame) -> Figure:
     ]
     frame: Look = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
     handles.append(entry("never released: stops the left front", **(square | frame)))
-    legend_below(figure, handles, 4)
+    legend_below(figure, handles, columns=4)
     return figure
 
 

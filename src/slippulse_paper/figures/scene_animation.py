@@ -79,7 +79,7 @@ def _draw_first_frame(figure: Figure, run: xr.Dataset, layer: Layer | None) -> l
         (line,) = axes.plot(x, values[0], color=colour)
         axes.set(ylabel=_with_unit(label, unit), ylim=(-0.04 * largest, 1.05 * largest))
         curves.append(Curve(line, values))
-    # The range is not converted to SI units. Its outermost samples, which are, stand in for it.
+    # The range has no unit. With a layer, the outermost samples in it give the limits.
     limits = (lower, upper) if layer is None else (x[0], x[-1])
     panels[-1].set(xlim=limits, xlabel=_with_unit(r"position $x$", unit_of_x))
     return curves
@@ -91,7 +91,10 @@ def _with_unit(label: str, unit: str) -> str:
 
 
 def _drawn_values(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:
-    """Return values as they are drawn, and their unit; the unit is empty without a layer."""
+    """Return values in the drawn unit, and this unit as text.
+
+    layer : the layer in SI units; if it is None, values have no unit, and the text is empty
+    """
     if layer is None:
         return values, ""
     numbers = layer.convert_to_si(values, quantity)

@@ -80,9 +80,8 @@ def profile_rows(run: xr.Dataset, field: str) -> pd.DataFrame:
 def steady_rows(run: xr.Dataset, theory: pd.Series) -> pd.DataFrame:
     """Return the largest slip and slip velocity of the exact steady pulse on each side.
 
-    Each is drawn as a horizontal line from x = 0 to the column position, which is the end of the
-    drawn range on the side of the pulse. There are no rows for sides without a pulse at the end or
-    without theory.
+    A row is drawn as a horizontal line from x = 0 to the end of the drawn range on its side (column
+    position). A side without a pulse at the end, or without theory, has no rows.
 
     theory : measured and predicted numbers of the run
     """

@@ -95,7 +95,8 @@ def draw(table: pd.DataFrame) -> Figure:
         path_axes.plot(last["time"], last["to_go"], marker, label=label, color=colour)
         draw_times(spacing_axes, rows_by_role["run"].sort_values("dx"), marker, colour)
     fraction = table["fraction"].max()
-    style.legend_below(figure, [*style.legend_handles([path_axes]), *legend_entries(fraction)], 5)
+    handles = [*style.legend_handles([path_axes]), *legend_entries(fraction)]
+    style.legend_below(figure, handles, columns=5)
     path_axes.set(yscale="log", xlabel=r"time $t\,/\,|x_{-}|$", ylim=(5e-4, 1.1))
     # All runs have the same pre-stress.
     parameters = table.loc[table["role"] == "run", ["left", "right", "width"]].iloc[0]

@@ -88,11 +88,12 @@ def _scene_entries(scenes: pd.DataFrame) -> list[Line2D]:
     """Return one legend entry for each scene, with its boundary condition and its levels."""
     entries = []
     for scene in scenes.itertuples():
-        has_springs = scene.gamma > 0.0
-        parameters = {"gamma": scene.gamma} if has_springs else {}
+        # If the stress is held, gamma is 0.
+        is_held = scene.gamma > 0.0
+        parameters = {"gamma": scene.gamma} if is_held else {}
         left, right = setting(scene.left), setting(scene.right)
         levels = left if left == right else f"{left}, {right}"
-        label = rf"{style.conditions(held=has_springs, **parameters)}, $\tau_0$ = {levels}"
+        label = rf"{style.conditions(held=is_held, **parameters)}, $\tau_0$ = {levels}"
         entries.append(style.entry(label, color=SCENE_COLOURS[str(scene.scene)]))
     return entries
 

@@ -35,7 +35,7 @@ def draw(table: pd.DataFrame) -> Figure:
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     draw_speeds(speed_axes, rows_by_role["selection"])
     handles = style.legend_handles(planes)
-    style.legend_below(figure, handles, len(handles))
+    style.legend_below(figure, handles, columns=len(handles))
     return figure
 
 

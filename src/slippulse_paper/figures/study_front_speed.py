@@ -168,7 +168,7 @@ def _draw_springs(axes: Axes, rows: pd.DataFrame) -> None:
         dashes, marker = look_of_level[level]
         shade = colour("damping_ratio", ratio)
         axes.plot(line["springs"], line["speed"], dashes, color=shade)
-        # At stiffer springs, no front is faster than the waves, and the theory has no speed.
+        # The theory has no speed beyond the end of the line.
         if line["speed"].isna().any():
             end = line.dropna(subset="speed").tail(1)
             axes.plot(end["springs"], end["speed"], "x", color=shade)
@@ -201,8 +201,10 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot([], [], marker=marker, label=label, **look)
     tau0 = float(rows["left"].iloc[0])
     undamped = rows["undamped"].max()
-    _mark_speed(axes, 1.0 / np.sqrt(1.0 - tau0), r"$1/\sqrt{1-\tau_0}$", ":", "bottom")
-    _mark_speed(axes, undamped, r"$1/\sqrt{1-\tau_0^2}$", "--", "top")
+    strongly_damped = 1.0 / np.sqrt(1.0 - tau0)
+    label = r"$1/\sqrt{1-\tau_0}$"
+    _mark_speed(axes, strongly_damped, label, dashes=":", edge="bottom")
+    _mark_speed(axes, undamped, r"$1/\sqrt{1-\tau_0^2}$", dashes="--", edge="top")
     axes.set(xscale="log", yscale="log", xlabel=r"spacing $\Delta x$", ylabel="front speed $v$")
     few_ticks(axes.yaxis, (1.2, 1.5, 2, 2.5, 3))
     title = rf"$\Gamma = 1$, refining, $\tau_0 = {tau0:g}$"
@@ -210,10 +212,10 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
     axes.legend(loc="upper right")
 
 
-def _mark_speed(axes: Axes, speed: float, label: str, dashes: str, side: str) -> None:
-    """Draw a horizontal line at a speed, with a label on its "top" or "bottom" side."""
+def _mark_speed(axes: Axes, speed: float, label: str, dashes: str, edge: str) -> None:
+    """Draw a horizontal line at a speed. The "top" or "bottom" edge of its label is on the line."""
     axes.axhline(speed, color=BLACK, linewidth=0.8, linestyle=dashes)
-    look: Look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": side}
+    look: Look = {"transform": axes.get_yaxis_transform(), "ha": "right", "va": edge}
     axes.text(0.99, speed, label, path_effects=TEXT_OUTLINE, **look)
 
 

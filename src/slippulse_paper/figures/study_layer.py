@@ -57,8 +57,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     """Return the rows of five parts of the figure, which the column part names.
 
     field : velocity in the layer at one time
-    pulse : one row for each pulse on its finest grid, measured at the last station (see
-        `drawn_pulses`)
+    pulse : one row for each pulse on its finest grid, measured where it passes the last station on
+        the fault
     free : the same for pulses in a layer whose top is free to rise
     coupled : width along the path of pulses whose strength depends on the normal stress
     map : what a pulse does (column outcome) for each gamma and fracture energy
@@ -173,9 +173,10 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     speed_axes, width_axes, slip_axes = panels
     for gamma, look in _gamma_looks(pulses).items():
         rows = pulses[pulses["gamma"] == gamma].sort_values("fracture_energy")
-        _draw_quantity(speed_axes, rows, "speed", 1.0, look)
-        _draw_quantity(width_axes, rows, "pulse_width", _crossing_width(gamma), look)
-        _draw_quantity(slip_axes, rows, "pulse_slip", rows["paper_pulse_slip"], look)
+        width_unit, slip_unit = _crossing_width(gamma), rows["paper_pulse_slip"]
+        _draw_quantity(speed_axes, rows, "speed", unit=1.0, look=look)
+        _draw_quantity(width_axes, rows, "pulse_width", unit=width_unit, look=look)
+        _draw_quantity(slip_axes, rows, "pulse_slip", unit=slip_unit, look=look)
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
@@ -263,7 +264,7 @@ def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
 
 
 def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
-    """Mark what the pulse of each point does: whether it is steady, grows, dies, or neither.
+    """Mark for each point what its pulse does (column outcome), such as "steady" or "growing".
 
     The axes are the fracture energy, and the distance sqrt(2/gamma - 1) at which shear waves from
     the top of the layer reach the fault.

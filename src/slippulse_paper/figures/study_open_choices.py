@@ -57,12 +57,12 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     rows = []
     for claim in tables["claims"].to_dict("records"):
         if claim["kind"] in NUMERIC_KINDS and claim["tolerance"]:
-            of_claim = {name: claim[name] for name in claim_columns}
+            claim_values = {name: claim[name] for name in claim_columns}
             # A combination has its choices by name, and the deviation that they give. A choice that
             # it leaves out has its default.
             combinations = claim["choices"] or [{"deviation": claim["deviation"]}]
             for combination in combinations:
-                rows.append(default_choices | combination | of_claim)
+                rows.append(default_choices | combination | claim_values)
     columns = [*claim_columns, "deviation", "release", "solution"]
     drawn = pd.DataFrame(rows)[columns].dropna(subset="deviation")
     return drawn.assign(over=drawn["deviation"] / drawn["tolerance"])
@@ -90,7 +90,7 @@ def draw(table: pd.DataFrame) -> Figure:
     shown = [name for name in CHOICE_LOOKS if (table["choice"] == name).any()]
     handles = [entry(marker="o", **CHOICE_LOOKS[name]) for name in shown]
     handles += [entry(name, color=BLACK, **look) for name, look in SOLUTION_MARKERS.items()]
-    style.legend_below(figure, handles, 2)
+    style.legend_below(figure, handles, columns=2)
     return figure
 
 

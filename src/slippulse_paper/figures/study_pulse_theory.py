@@ -59,7 +59,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a to c) each quantity divided by the paper's formula, (d) refined lattices."""
+    """Draw (a to c) each quantity divided by the paper's formula, (d) errors by spacing."""
     figure, (*quantity_panels, refined_axes) = style.new_panels(PAGE_WIDTH, 4.6, "ab;cd")
     rows_by_role = style.by_role(table)
     gamma = rows_by_role["simulation"]["gamma"].iloc[0]

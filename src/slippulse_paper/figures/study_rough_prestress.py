@@ -70,7 +70,8 @@ def draw(table: pd.DataFrame) -> Figure:
     for ensemble in ensembles(held_top, with_deaths):
         draw_survival(survival_axes, ensemble)
         draw_rate(rate_axes, ensemble)
-    # If no pulse dies, panel a is empty, but its axis still has an end.
+    # Pulses are followed up to the distance stop, at which the rough pre-stress ends. If no pulse
+    # dies, panel a is empty, but its axis still has an end.
     stops = ensembles_of_held_top["stop"] if with_deaths.empty else with_deaths["stop"]
     finish_survival(survival_axes, stops.max())
     finish_rates(rate_axes, with_deaths)
@@ -114,10 +115,10 @@ def draw_survival(axes: Axes, ensemble: Ensemble) -> None:
     axes.fill_between(curve["distance"], curve["low"], curve["high"], **band)
 
 
-def finish_survival(axes: Axes, stop: float) -> None:
-    """Set the axes of panel a; pulses are followed up to the distance ``stop``."""
+def finish_survival(axes: Axes, largest_distance: float) -> None:
+    """Set the axes of panel a; pulses are followed up to ``largest_distance``."""
     axes.set(xlabel="distance $x/H$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
-    axes.set(ylim=(0.6, 1.01), xlim=(0.0, stop))
+    axes.set(ylim=(0.6, 1.01), xlim=(0.0, largest_distance))
     # The panel is empty if no pulse has died.
     if axes.lines:
         axes.legend(
@@ -187,7 +188,7 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
 
 
 def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
-    """Mark the slip velocity of each pulse that is alive at the end, as a function of theory's."""
+    """Mark the slip velocity of each pulse that is alive at the end, by its exact velocity."""
     pulses = ensemble.part("pulse")
     alive = pulses[~pulses["died"].astype(bool)]
     look: Look = {"color": ensemble.colour, "label": ensemble.label}
@@ -198,7 +199,7 @@ def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
 
 
 def finish_velocities(axes: Axes) -> None:
-    """Draw the line on which both velocities are equal, and set the axes of panel d."""
+    """Draw the line of equal simulated and exact velocity, and set the axes of panel d."""
     largest = float(axes.dataLim.x1)
     axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
     axes.set(

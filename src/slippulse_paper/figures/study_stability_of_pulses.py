@@ -104,7 +104,7 @@ def draw(table: pd.DataFrame) -> Figure:
         entry(lattice_label, color=GREY, marker="o", **OPEN_MARKER),
         entry("finite memory", color=GREY, marker="|", markersize=7.0),
     ]
-    style.legend_below(figure, handles, 4)
+    style.legend_below(figure, handles, columns=4)
     _finish_deviation(deviation_axes)
     _draw_velocity(velocity_axes, table[table["role"] == "velocity"])
     return figure

@@ -84,17 +84,18 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
 
     levels : the columns with the levels of the pre-stress; left out for tables of pre-stress
     """
-    has_springs = runs["boundary"].iloc[0] == "displacement"
-    columns = ["gamma"] if has_springs else []
+    is_held = runs["boundary"].iloc[0] == "displacement"
+    columns = ["gamma"] if is_held else []
     if "profile" not in runs:
         columns += levels
     columns += ["damping_ratio", "width", "dx"]
     shared = [column for column in columns if runs[column].nunique() == 1]
-    return conditions(held=has_springs, **runs[shared].iloc[0])
+    return conditions(held=is_held, **runs[shared].iloc[0])
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
     """Return the columns that vary: numbers before texts, and then those with most values first."""
+    # Only a sweep with pre-stress tables has the column profile.
     columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
     # If two columns are equal in every run, only the first one is kept. In the transposed table,
     # each column is a row.
@@ -134,7 +135,7 @@ def draw(table: pd.DataFrame) -> Figure:
         handles.append(entry("exact theory", color=GREY, linewidth=0.8))
     if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="o", color=GREY, **OPEN_MARKER))
-    legend_below(figure, handles, 5)
+    legend_below(figure, handles, columns=5)
     return figure
 
 

@@ -95,7 +95,10 @@ def is_unchanged(path: str | Path, state: FileState) -> bool:
 
 
 def _is_unchanged_or_missing(path: str, state: FileState) -> bool:
-    """Return True if a file still has its recorded content, or if it cannot be read."""
+    """Return True if a file still has its recorded content, or if it cannot be read.
+
+    Snakemake itself notices a missing file.
+    """
     try:
         return is_unchanged(path, state)
     except OSError:

@@ -114,7 +114,8 @@ def compare(new: Path, old: Path) -> Comparison:
     new_tables, old_tables = _table_names(new), _table_names(old)
     for name in sorted(new_tables ^ old_tables):
         result.other_differences.append(f"{name}: in one folder only")
-    # A file that is older than its inputs does not describe the other results of its folder.
+    # Compare the configurations and the verdicts, in the files that CHANGE_LINES names. A file that
+    # is older than its inputs does not describe the other results of its folder.
     outdated_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
     for name in CHANGE_LINES:
         result.older[name] = [
@@ -151,6 +152,8 @@ def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> No
     if not (new_path.exists() and old_path.exists()):
         result.other_differences.append(f"{name}: missing in one folder; not compared")
         return
+    # `changes` names its arguments for another use: here, the old content is in place of the
+    # shipped configuration.
     result.changes[name] = changes(shipped=_read_content(old_path), config=_read_content(new_path))
     line = CHANGE_LINES[name]
     result.other_differences += [line.format(**change) for change in result.changes[name]]

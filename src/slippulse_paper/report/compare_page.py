@@ -144,7 +144,7 @@ def differing_numbers(numbers: pd.DataFrame) -> pd.DataFrame:
     The difference is divided by the allowed difference. It counts as infinite if only one of the
     two numbers is known. Numbers without an uncertainty come last.
     """
-    # Numbers of the other outcome agree within their uncertainties, even if they are not equal.
+    # Numbers with the outcome AGREES may be unequal, too, but only within their uncertainties.
     may_differ = numbers["outcome"].isin([DIFFERS, UNKNOWN, ALTERED])
     differing = numbers[may_differ & (numbers["new"] != numbers["old"])]
     # One of the two uncertainties is enough.

@@ -112,6 +112,7 @@ def compare_numbers(
 
     parameters : columns that describe a run
     """
+    # The column allowed has the allowed difference by the uncertainties.
     numbers = _list_numbers(new, old, parameters)
     # A run has one row for each of its numbers.
     is_same_lattice = np.repeat(_is_same_lattice(new, old), len(new.numbers.columns))
@@ -220,6 +221,7 @@ def named_in_errors(path: Path) -> Iterator[None]:
         yield
     except UnreadableFile:
         raise
+    # The text of a LookupError is only the name of what is missing.
     except LookupError as error:
         raise UnreadableFile(path, f"no {error}") from None
     except (OSError, ValueError, TypeError, RecursionError) as error:

@@ -102,7 +102,8 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
         return f"{image[0]}, alt: {json.dumps(alternative, ensure_ascii=False)}"
 
     source = re.sub(r'image\("([^"]+)"', add_alternative_text, source)
-    # The declared types of Typst do not allow these options together with a source in bytes.
+    # `partial` is used because the declared types of `typst.compile` do not allow these options
+    # together with a source in bytes.
     compiled = partial(
         typst.compile, ignore_system_fonts=True, font_paths=[FONT_FOLDER], timestamp=TIMESTAMP
     )

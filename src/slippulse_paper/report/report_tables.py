@@ -107,7 +107,7 @@ def verdicts(lines: Iterable[Line]) -> str:
     rows = []
     for line in lines:
         links = []
-        # A verdict links to the first claim that has it. The subjects of the claims follow.
+        # A verdict links to the first claim that has it. The subjects of all such claims follow.
         for claim, subjects in line.verdicts:
             link = f"[{claim.verdict}](../claims.html#{claim.id})"
             links.append(f"{link} {subjects}".strip())
@@ -205,7 +205,7 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
     readings : the part ``published`` of the configuration
     """
-    # The further numbers of these two claims are our values of the readings, by their statements.
+    # These two claims have our values as further numbers, by the statement of the reading.
     left_panel = ledger("published_space_time_figure").further
     right_panel = ledger("published_space_time_figure_right").further
     our_values = left_panel | right_panel
@@ -229,7 +229,7 @@ def found_list(ledger: Ledger) -> str:
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
-    """Return a table of how many sentences are tested, and how many are not for each reason."""
+    """Return a table of how many sentences are tested, and for each reason how many are not."""
     titles = REASONS | {"all": "all"}
     rows = [(titles[reason], count) for reason, count in coverage(sentences).items()]
     columns = [text_column("sentences", 60), number_column("how many", 15)]
@@ -434,7 +434,7 @@ def _relative_measured_step(row: Mapping, name: str) -> str:
 
 
 def alteration_note(altered: Iterable[Mapping], ledger: Ledger, verdicts: Mapping[str, str]) -> str:
-    """Return a quotation that lists differences from the shipped configuration and verdicts.
+    """Return a block quotation of the differences from the shipped configuration and verdicts.
 
     Returns an empty text if there are none.
 

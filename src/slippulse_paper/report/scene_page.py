@@ -154,7 +154,7 @@ def _number_cells(row) -> dict[str, str]:
         promise = f"{promised:g}, {outcome}"
     return {
         "label": row.label,
-        "measured": with_uncertainty(row.value, row.uncertainty, "(?)"),
+        "measured": with_uncertainty(row.value, row.uncertainty, unknown="(?)"),
         "unit": getattr(row, "unit", ""),
         "paper": number(getattr(row, "paper", math.nan), 5).replace(MISSING, NO_NUMBER),
         "theory": number(row.theory, 5) if math.isfinite(row.theory) else NO_NUMBER,

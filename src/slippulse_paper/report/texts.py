@@ -204,7 +204,7 @@ class Line(NamedTuple):
 def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -> list[Line]:
     """Return the lines of the summary, with their verdicts, and with expressions evaluated.
 
-    summary : content of manuscript/summary.yaml
+    summary : content of manuscript/summary.yaml, whose list ``verdict`` has an entry for each line
     """
     lines = []
     for entry in summary["verdict"]:

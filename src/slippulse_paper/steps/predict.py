@@ -26,8 +26,10 @@ DIGITS = 15
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the table ``predicted`` for the resolved simulation ``sweep`` in the settings.
 
-    The settings also have the topics of the predictions (``topics``), and the values ``fraction``
-    and ``still`` of the block `measure` of the configuration.
+    The settings also have the topics of the predictions (``topics``), and two fractions: that of
+    its path which the left front has covered at the transition under a stress boundary
+    (``fraction``), and that of the largest slip velocity below which a point counts as at rest
+    (``still``).
     """
     swept_runs = [*runs(settings["sweep"])]
     table = predictions(settings["topics"], swept_runs, settings)

@@ -37,6 +37,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     # The relative accuracy that the user requires, if there is one.
     promise = any_sweep["accuracy"].get("promise")
     if promise is not None:
+        # Under a stress boundary, this fraction of the left front's path defines the transition.
         fraction = settings["measure"]["fraction"]
         uncertainties = judge_promises(uncertainties, measured, promise, fraction)
         sys.stderr.write(f"  {name}: {summarise_promises(uncertainties, promise)}\n")
@@ -49,7 +50,7 @@ def _run_and_measure(sweep: dict, settings: dict) -> pd.DataFrame:
     """Solve the scenes of a resolved simulation, and return the table of measured numbers."""
     solve = resolve_name(settings["solver"])
     scenes, samples = expand(sweep)
-    data = solve_sweep(solve, scenes, samples, sweep["record"], settings["threads"])
+    data = solve_sweep(solve, scenes, samples, record=sweep["record"], threads=settings["threads"])
     # Add the number and the seed of each run's profile, if the profiles are tables of pre-stress.
     data = with_run_labels(data, profile_labels(sweep), sweep["record"])
     return measured_table(data, settings["measure"])

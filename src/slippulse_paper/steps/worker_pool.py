@@ -35,7 +35,7 @@ class WorkerPool:
 
         ``workers`` is the largest number of workers.
         """
-        # If no process can be started, the first job reports the reason.
+        # Any quick function starts the worker. If that fails, the first job reports the reason.
         with suppress(EOFError, OSError):
             self._submit(workers, os.getpid)
 
@@ -72,7 +72,7 @@ def run_here(job: Job) -> None:
 
     Raises JobFailed with the reason if the job fails.
     """
-    # The job needs the libraries and the environment variables that this module sets.
+    # This import loads the libraries and sets the environment variables that a job needs.
     from . import worker_libraries  # noqa: F401
 
     run_job(job)

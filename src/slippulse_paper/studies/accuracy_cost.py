@@ -78,7 +78,7 @@ class Setting(NamedTuple):
 
     def run_pulse(self, damping_ratio: float) -> xr.Dataset:
         """Simulate a pulse under a displacement boundary."""
-        return self._run(UNIFORM_PRESTRESS, DURATION, GAMMA, damping_ratio)
+        return self._run(UNIFORM_PRESTRESS, DURATION, gamma=GAMMA, damping_ratio=damping_ratio)
 
     def run_crack(self) -> xr.Dataset:
         """Simulate a crack that turns into a pulse under a stress boundary.
@@ -91,7 +91,7 @@ class Setting(NamedTuple):
         crack = cached_crack(ARRESTING_PRESTRESS, damping_ratio)
         duration = RELATIVE_CRACK_DURATION * crack.transition(COVERED_FRACTION).time
         coarser = self._replace(dx=RELATIVE_CRACK_SPACING * self.dx)
-        return coarser._run(ARRESTING_PRESTRESS, duration, 0.0, damping_ratio)
+        return coarser._run(ARRESTING_PRESTRESS, duration, gamma=0.0, damping_ratio=damping_ratio)
 
     def _run(
         self, prestress: Prestress, duration: float, gamma: float, damping_ratio: float
@@ -158,6 +158,8 @@ def locking_rows(front_window: float) -> pd.DataFrame:
     In the textbook scheme the front speed is wrong and depends on the step, because the front
     advances by one block in a whole number of steps. In the localised scheme it does not depend on
     the step, so fewer steps are enough.
+
+    front_window : last fraction of the path over which the front speed is measured
     """
     schemes_and_steps = [("fixed_step", step) for step in LOCKING_STEPS]
     schemes_and_steps += [("localised", step) for step in LOCKING_STEPS[::4]]
@@ -173,6 +175,8 @@ def errors_and_cost(setting: Setting, front_window: float) -> dict[str, float]:
     """Return the largest relative error of each quantity, and the total cost of all runs.
 
     The runs are a pulse for each damping ratio, and a crack that turns into a pulse.
+
+    front_window : last fraction of the path over which the front speed is measured
     """
     runs = [pulse_errors(setting, damping_ratio, front_window) for damping_ratio in DAMPING_RATIOS]
     runs.append(crack_errors(setting))

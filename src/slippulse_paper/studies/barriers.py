@@ -73,6 +73,7 @@ def rows_by_spacing(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, 
     """Return the depth to which a pulse enters a barrier without end, for each spacing.
 
     case : a row of `exact_row`, with the parameters and the exact depth
+    pulse : the exact steady pulse before the barrier
     """
     rows = []
     for dx in SPACINGS:
@@ -85,6 +86,7 @@ def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, A
     """Return one row for each length of a barrier; measured is 1 if a pulse passes it, else 0.
 
     case : a row of `exact_row`, with the parameters and the exact depth
+    pulse : the exact steady pulse before the barrier
     """
     rows = []
     for relative_length in RELATIVE_LENGTHS:
@@ -119,6 +121,7 @@ def passes(case: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> 
     """Return True if a pulse on a lattice passes a barrier.
 
     case : a row of `exact_row`, with the parameters and the exact depth
+    pulse : the exact steady pulse before the barrier
     relative_length : length of the barrier divided by the exact depth
     """
     exact_depth = case["exact"]

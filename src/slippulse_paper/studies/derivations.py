@@ -48,8 +48,8 @@ NumberFunctions = dict[str, Callable[[], float]]
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each number, with the columns quantity, x and value.
 
-    The value is NaN if theory has none. The position x is NaN for numbers that do not depend on it.
-    These are all except the release time, the stick time and the final slip.
+    The value is NaN if theory has none. Only the release time, the stick time and the final slip
+    depend on the position x. For all other numbers x is NaN.
     """
     scenes = {}
     for name, sweep in settings["sweeps"].items():

@@ -89,7 +89,7 @@ class Case:
         if self.quantity != "T_trans":
             return 1.0
         if self.gamma == 0.0:
-            crack = ArrestingCrack(Prestress(self.level, 0.0), self.damping_ratio)
+            crack = ArrestingCrack(Prestress(self.level, 0.0, self.width), self.damping_ratio)
             return crack.transition(COVERED_FRACTION).time
         return exact_transition_displacement(symmetric, self.gamma, self.damping_ratio).time
 

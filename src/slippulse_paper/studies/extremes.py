@@ -146,6 +146,8 @@ def measured_outcome(case: Case, front_window: float) -> Outcome:
     """Run a case, and return the measured value and the flags of the run.
 
     Raises ValueError if the scene is refused, and UnstableRun if the run is stopped.
+
+    front_window : last fraction of the path over which the front speed is measured
     """
     if case.quantity == "velocity error":
         # The solver does not offer single precision, so this is the error of a simple program.
@@ -202,23 +204,26 @@ def drift(run: xr.Dataset, quantity: str) -> float:
 
     The mean over the last tenth of the path is compared with the mean over the third tenth.
     """
-    times, distances = front_path(run)
+    mean_between = mean_slip if quantity == "slip drift" else mean_front_speed
+    return mean_between(run, 0.9, 1.0) / mean_between(run, 0.2, 0.3) - 1.0
+
+
+def mean_slip(run: xr.Dataset, start: float, end: float) -> float:
+    """Return the mean slip between two fractions of the path of the right front."""
+    _, distances = front_path(run)
     x, path_length = run["x"].values, distances[-1]
+    # Slip still grows close to the front, so the last hundredth of the path is left out.
+    in_stretch = (x > start * path_length) & (x < (end - 0.01) * path_length)
+    return float(np.mean(run["slip"].values[in_stretch]))
 
-    def mean_slip(start: float, end: float) -> float:
-        """Return the mean slip between two fractions of the path."""
-        # Slip still grows close to the front, so the last hundredth of the path is left out.
-        in_stretch = (x > start * path_length) & (x < (end - 0.01) * path_length)
-        return float(np.mean(run["slip"].values[in_stretch]))
 
-    def mean_speed(start: float, end: float) -> float:
-        """Return the mean front speed between two fractions of the path."""
-        in_stretch = (distances > start * path_length) & (distances < end * path_length)
-        speed, _ = np.polyfit(times[in_stretch], distances[in_stretch], 1)
-        return float(speed)
-
-    mean_between = mean_slip if quantity == "slip drift" else mean_speed
-    return mean_between(0.9, 1.0) / mean_between(0.2, 0.3) - 1.0
+def mean_front_speed(run: xr.Dataset, start: float, end: float) -> float:
+    """Return the mean speed of the right front between two fractions of its path."""
+    times, distances = front_path(run)
+    path_length = distances[-1]
+    in_stretch = (distances > start * path_length) & (distances < end * path_length)
+    speed, _ = np.polyfit(times[in_stretch], distances[in_stretch], 1)
+    return float(speed)
 
 
 def single_precision_error(case: Case) -> float:

@@ -93,7 +93,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
 
 def _rows_of_all_laws(still_fraction: float) -> list[dict[str, Any]]:
-    """Simulate ruptures under all laws at all levels, and return one row for each."""
+    """Simulate ruptures under all laws at all levels, and return one row for each.
+
+    still_fraction : see `_simulated_row`
+    """
     rows = []
     for level in LEVELS:
         laws: list[Friction] = []
@@ -103,8 +106,8 @@ def _rows_of_all_laws(still_fraction: float) -> list[dict[str, Any]]:
             laws.append(RateWeakening(WEAKENING_SLOPE, limit))
         for relative_distance in RELATIVE_DISTANCES:
             d_c = relative_distance * level**2 / GAMMA
-            laws.append(SlipWeakening(d_c, NUCLEATION_HALF_LENGTH))
-            laws.append(ExponentialWeakening(d_c, NUCLEATION_HALF_LENGTH))
+            laws.append(SlipWeakening(d_c, nucleation=NUCLEATION_HALF_LENGTH))
+            laws.append(ExponentialWeakening(d_c, nucleation=NUCLEATION_HALF_LENGTH))
         rows += [
             _simulated_row(
                 level, law, dx=DX, step_over_dx=STEP_OVER_DX, still_fraction=still_fraction
@@ -118,12 +121,14 @@ def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
     """Simulate ruptures under slip weakening at several spacings and d_c, with the exact speed.
 
     The exact speed is NaN if the fracture energy is too large for a rupture.
+
+    still_fraction : see `_simulated_row`
     """
     rows = []
     for level, dx, distance_over_dx in product(
         SELECTION_LEVELS, SELECTION_SPACINGS, DISTANCES_OVER_DX
     ):
-        law = SlipWeakening(distance_over_dx * dx, NUCLEATION_HALF_LENGTH)
+        law = SlipWeakening(d_c=distance_over_dx * dx, nucleation=NUCLEATION_HALF_LENGTH)
         exact_speed = np.nan
         # At a relative strength of 1 the fracture energy is as large as the released energy.
         if _relative_strength(level, law) < 1.0:

@@ -108,6 +108,7 @@ def lines_by_spacing(runs: pd.DataFrame) -> pd.DataFrame:
     runs : parameters of simulated runs, one row for each run
     """
     rows = []
+    # Only runs with one level and a small beta have a line.
     for line_values, spacings in runs.query(HAS_LINE_BY_SPACING).groupby(LINE_COLUMNS)["dx"]:
         line = dict(zip(LINE_COLUMNS, line_values, strict=True))
         level, gamma, release = line["left"], line["gamma"], line["release"]

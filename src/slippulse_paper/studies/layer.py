@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from slippulse.model.balance import prestress_balance_position
 from slippulse.model.prestress import Prestress
 from slippulse.solver.layer import LayerRun, LayerScene, simulate_layer
-from slippulse.theory.closed_pulse import paper_pulse, paper_transition_stress
+from slippulse.theory.closed_pulse import paper_pulse
 from slippulse.theory.law_pulses import undamped_weakening_slip, weakening_pulse
 
 NEEDS = {"settings": ()}
@@ -140,7 +141,7 @@ def pulse_rows(gamma: float) -> Rows:
         theory = one_dimensional_theory(scene)
         rows += [row | theory for row in near_rows] + far_rows
     if gamma == GAMMA:
-        # One pulse of the part step is in uniform pre-stress, so it can be followed farther, too.
+        # The pulse of the part step that stays in the pre-stress LEVEL is followed farther, too.
         _, far_rows = near_and_far_rows(uniform_scene("displacement", gamma, LEVEL, STEP_WEAKENING))
         rows += far_rows
     return rows
@@ -149,23 +150,23 @@ def pulse_rows(gamma: float) -> Rows:
 def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     """Return the rows of one pulse at STATION_POSITIONS and, on some grids, at FAR_STATIONS.
 
-    The pulse is followed to FAR_STATIONS on the grids of `grids_far_away`. If it has split in one
-    run, it is also followed on the next finer grid, and on two grids with damping.
+    On the grids of `grids_far_away` the run is so long that the pulse passes FAR_STATIONS. If the
+    pulse splits, the run on the next finer grid is long, too, and there are two damped long runs.
     """
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
     coarsest = CELLS[0]
     # The run on the coarsest grid shows how long the runs to near and far stations must be.
-    scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
-    run = simulate_layer(scene)
-    near_rows, far_rows = measured_rows("pulse", scene, run, positions), []
-    near_scene = shortened(scene, run, positions)
-    far_scene = extended(near_scene, near_rows[-1]["speed"])
+    first_scene = replace(scene, duration=DURATION * stretch(scene.gamma), cells=coarsest)
+    first_run = simulate_layer(first_scene)
+    near_rows, far_rows = measured_rows("pulse", first_scene, first_run, positions), []
+    near_scene = shortened(first_scene, first_run, positions)
+    far_scene = extended(near_scene, speed=near_rows[-1]["speed"])
     far_grids = grids_far_away(near_scene)
     if coarsest in far_grids:
         far_rows += rows_at_far_stations("far", far_scene, simulate_layer(far_scene))
     for cells in finer_grids(near_scene):
-        split_in_last_run = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
-        is_followed_far = split_in_last_run or cells in far_grids
+        split_on_coarser_grid = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
+        is_followed_far = split_on_coarser_grid or cells in far_grids
         scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
         run = simulate_layer(scene)
         near_rows += measured_rows("pulse", scene, run, positions)
@@ -342,6 +343,7 @@ def barrier_rows() -> Rows:
     stops according to the paper's equation.
     """
     prestress = Prestress(BARRIER_LEVEL, 0.0, GAUSSIAN_WIDTH)
+    balance_distance = abs(prestress_balance_position(prestress))
     rows: Rows = []
     for weakening in WEAKENINGS:
         scene = LayerScene(
@@ -354,8 +356,6 @@ def barrier_rows() -> Rows:
             precision="single",
         )
         rows += rows_along_path("barrier", scene, CELLS[:2], sides=(1, -1))
-    # According to the paper's equation the front runs at speed 1, so the time is the distance.
-    balance_distance, _ = paper_transition_stress(prestress)
     return [row | {"balance_distance": balance_distance} for row in rows]
 
 
@@ -510,7 +510,7 @@ def measured_rows(
     numbers_of_run = numbers_of_whole_run(scene, run, side)
     rows = []
     for station, position in enumerate(positions, start=1):
-        pulse = pulse_at_station(run, position, scene.nucleation)
+        pulse = pulse_at_station(run, position, window=scene.nucleation)
         rows.append(parameters | numbers_of_run | {"station": station} | pulse)
     return rows
 
@@ -530,11 +530,13 @@ def numbers_of_whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[st
     if math.isfinite(scene.trail):
         first_stick = math.nan
     stick_times = np.where(np.isfinite(run.stick_time), run.stick_time, math.inf)
+    # The first row of velocities is that of the fault, which is the bottom of the layer.
+    slip_velocity = run.velocity[0]
     return {
         "first_stick": first_stick,
         "earliest_stick": float(stick_times.min()),
         "earliest_stick_position": float(abs(run.x[np.argmin(stick_times)])),
-        "largest_velocity": float(run.velocity[0].max()),
+        "largest_velocity": float(slip_velocity.max()),
         "energy_residual": run.energy_residual,
         "end": side * path_length(run, side),
     }
@@ -598,7 +600,8 @@ def field_rows(scene: LayerScene) -> pd.DataFrame:
     The part of the layer that no wave has reached is left out.
     """
     run = simulate_layer(scene)
-    # Waves run at most at speed 1, from the edge of the nucleation on.
+    # Waves run at most at speed 1, from the edge of the nucleation region at x = scene.nucleation.
+    # The second length of the region is a margin.
     reach = scene.duration + 2.0 * scene.nucleation
     columns = np.flatnonzero(run.x <= reach)[::DRAWN_STRIDE]
     rows = np.arange(0, scene.cells + 1, DRAWN_STRIDE)

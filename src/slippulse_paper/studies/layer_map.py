@@ -94,9 +94,9 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
 def outcome(slips: Mapping[str, float]) -> str:
     """Classify the pulses of one point of the map, from their slips along the path.
 
-    The pulse in uniform pre-stress, the one from below (that forms in a lower pre-stress) and the
-    one from above have a slip halfway and at the last position. The last slip of the pulse in
-    uniform pre-stress is called the steady slip.
+    A pulse is named by where it forms: uniform (in the final pre-stress), from_below (in a lower
+    one) or from_above. Its slip at the last position is in NAME_slip, and halfway in
+    NAME_slip_halfway. The steady slip is uniform_slip.
 
     dying : the slip in uniform pre-stress falls along the path
     growing : the slip in uniform pre-stress rises along the path, or one of the other pulses rises

@@ -29,9 +29,8 @@ NEEDS = {
 LATEST_FIRST_STICK = 1.7
 # Beyond this number of its widths a Gaussian is smaller than rounding errors.
 GAUSSIAN_END_IN_WIDTHS = 12.0
-# Nodes (between -1 and 1) and weights of Gauss-Legendre integration over a tent (see
-# `stress_arrests`).
-TENT_NODES, TENT_WEIGHTS = np.polynomial.legendre.leggauss(24)
+# Nodes and weights of Gauss-Legendre integration from -1 to 1.
+GAUSS_NODES, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
 # Columns of the paper's estimates.
 PAPER_COLUMNS = ["paper_transition_time", "paper_transition_length"]
 # Columns of an arrest that are times or lengths.
@@ -60,7 +59,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return exact transitions and the paper's estimates.
 
     There is one row for each run of figure 5 and each combination of choices. The table
-    ``open_choices`` lists them, with one row for each value of each choice.
+    ``open_choices`` lists the choices, with one row for each value of a choice.
     """
     with_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_displacement"]))
     with_springs = with_springs.query("left > 0")
@@ -85,7 +84,10 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def displacement_transitions(
     runs: pd.DataFrame, damping_ratio: float, release: str
 ) -> pd.DataFrame:
-    """Return the transitions under a displacement boundary, at the first stick, that of x = 0.
+    """Return the transitions under a displacement boundary, and the paper's estimates of them.
+
+    The transition is at the first stick, which is at x = 0. Its length is the distance between the
+    fronts at that time.
 
     runs : left (the level on both sides), width of the Gaussian, and gamma of each run
     """
@@ -123,8 +125,9 @@ def stick_times_of_centre(
     """
     times = []
     for gamma, latest_stick in zip(gammas, latest_sticks, strict=True):
-        rupture = Part(fronts, gamma, until=latest_stick)
-        (stick_time,) = rupture.find_stick_times(np.array([0.0]))
+        # The motion behind given fronts, which are one connected part of a rupture.
+        part = Part(fronts, gamma, until=latest_stick)
+        (stick_time,) = part.find_stick_times(np.array([0.0]))
         times.append(float(stick_time))
     return np.array(times)
 
@@ -189,9 +192,10 @@ def tent_arrest(left: float, damping_ratio: float, release: str) -> Arrest:
     """
     # The right front crosses the tent from x = 0 to x = 1 in a time that is the mean of 1/speed
     # over the levels from 0 to 1, because the tent falls evenly over the distance 1.
-    levels = 0.5 + 0.5 * TENT_NODES
+    # The nodes and weights of Gauss-Legendre integration from -1 to 1 are converted to 0 to 1.
+    levels = 0.5 + 0.5 * GAUSS_NODES
     slownesses = 1.0 / front_speed(levels, damping_ratio, release)
-    crossing_time = float(TENT_WEIGHTS @ slownesses) / 2.0
+    crossing_time = float(GAUSS_WEIGHTS @ slownesses) / 2.0
     # At x_minus the integral of the pre-stress to infinity is 0. Over the tent, the integral is 1/2
     # on the right of x = 0 and (1 + left)/2 on the left. The negative level between x_minus and the
     # tent balances it.

@@ -80,7 +80,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         left_panel_rows(panel, release, part)
         for release, part in product(RELEASES, ("profile", "arrows"))
     ]
-    # The fit of this rule with the largest damping ratio is the closest to that of the notebook.
+    # The damping ratio of the notebook is larger than those of the fits with its release rule. Its
+    # fit begins at the result for the largest of these, which is in the last row.
     profiles = pd.concat(parts).query("part == 'profile'")
     closest = profiles[profiles["release"] == NOTEBOOK_RELEASE].iloc[-1]
     guess = closest[["tau0", "gamma"]].to_numpy(float)
@@ -137,6 +138,7 @@ def right_panel_rows(
     velocity = float(run["sample_velocity"].max())
     # The exact value of the largest velocity does not depend on the damping.
     exact = crack.peak_velocity
+    # A pull is a deviation from a reading, divided by the error of the reading.
     pull = (velocity - largest_velocity["drawn"]) / largest_velocity["reading_error"]
     return largest_velocity.assign(
         part="stress",
@@ -149,7 +151,8 @@ def right_panel_rows(
         correction=velocity - exact,
         pull=pull,
         independent_pull=pull,
-        weight=1.0,
+        # It is only compared.
+        weight=0.0,
     )
 
 
@@ -191,11 +194,12 @@ class LeftPanel:
     def __init__(self, readings: pd.DataFrame) -> None:
         """Keep the readings, from `readings_of`, with arrays of their columns."""
         self.readings = readings
+        # Values that were read off the figure.
         self.drawn = readings["drawn"].to_numpy()
         self.errors = readings["reading_error"].to_numpy()
-        # This matrix turns deviations from the readings into numbers with independent errors of 1.
         shared_errors = readings["shared_error"].to_numpy()
-        self.combinations = independent_combinations(self.errors, shared_errors)
+        # This matrix turns deviations from the readings into numbers with independent errors of 1.
+        self.decorrelation_matrix = independent_combinations(self.errors, shared_errors)
         self.quantities = readings["quantity"].tolist()
         # Readings of the trailing edge have the time in their name.
         self.edge_names, self.edge_times = [], []
@@ -265,7 +269,7 @@ class LeftPanel:
         The pulls are not independent, because some readings share a part of their errors. The sum
         of squares of the independent pulls is the chi-square.
         """
-        return self.combinations @ (values - self.drawn)
+        return self.decorrelation_matrix @ (values - self.drawn)
 
     def fit(
         self,

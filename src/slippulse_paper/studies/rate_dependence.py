@@ -115,7 +115,10 @@ def _front_and_critical_alpha(level: float) -> Front:
 
 
 def _lattice_rows(still_fraction: float) -> pd.DataFrame:
-    """Run lattices at all levels and fractions of the critical rate strengthening."""
+    """Run lattices at all levels and fractions of the critical rate strengthening.
+
+    still_fraction : see `_lattice_row`
+    """
     # Below this value slip grows without bound, and the model refuses it.
     smallest_alpha = -2.0 * np.sqrt(GAMMA)
     rows = []
@@ -190,8 +193,11 @@ def _regime_and_pulse(
 ) -> tuple[str, PulseSize]:
     """Return the regime at the end of a run, and the size of the pulse; NaN if it does not stick.
 
-    A pulse sticks if its sliding part has stopped growing and ends at a trailing edge. Otherwise it
-    ends in a tail in which velocities decrease without end, to QUIET_VELOCITY and less.
+    A pulse sticks if its sliding part has stopped growing and ends at a trailing edge. Without a
+    trailing edge, velocities decrease towards the centre, to less than QUIET_VELOCITY times the
+    largest velocity.
+
+    still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
     right = right_side.right_of_centre(run)
     halfway = right_side.sliding_part(right, 0.5 * duration)
@@ -263,6 +269,7 @@ def _asymptote(alpha: float) -> pd.DataFrame:
     U erfc(y sqrt(alpha/t)/2), where U is the final slip.
     """
     x_minus = prestress_balance_position(ARRESTING_PRESTRESS)
+    # Beyond x = 12 the pre-stress is 0 to within rounding.
     x = np.linspace(x_minus, 12.0, 20_001)
     # The final slip is the integral of y times the pre-stress over y.
     final_slip = float(np.trapezoid((x - x_minus) * ARRESTING_PRESTRESS(x), x))

@@ -111,6 +111,9 @@ def corners_of_pulse_area(damping_ratio: float, release: str, still_fraction: fl
 
     In this area the left level is negative, and the right level is positive but small compared
     with the size of the left one. With a larger right level, ruptures are cracks.
+
+    still_fraction : a rupture is a pulse if its velocity at x = 0 falls below this fraction of its
+        largest velocity
     """
     # A rupture is a pulse up to this ratio of the right level to the size of the left one.
     level_ratios = largest_pulse_ratio(BORDER_RIGHT_LEVELS, damping_ratio, release, still_fraction)

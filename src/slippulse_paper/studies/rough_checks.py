@@ -208,8 +208,9 @@ def exact_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.Data
 def memory_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Return how much a bump of the pre-stress changes the final slip beyond it.
 
-    There is one row for each of RELATIVE_DISTANCES. The column change has the median over some
-    seeds of the relative change, and the column high has the largest one.
+    There is one row for each of RELATIVE_DISTANCES, which are in units of the memory, within which
+    a pulse forgets what it met. The column change has the median over some seeds of the relative
+    change, and the column high has the largest one.
     """
     plain = [dict(profile) for profile in ensemble[:BUMP_SEEDS]]
     bump = [BUMP_POSITION, BUMP_HEIGHT, BUMP_WIDTH]

@@ -97,8 +97,9 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
     # One of the ensembles has no roughness.
     (smooth,) = (ensemble for ensemble in under_stress if ensemble.parameters["deviation"] == 0.0)
     smooth_profile = smooth.profiles[0]
-    # This is twice the largest velocity that the pulse would have without roughness.
+    # The push that a pulse has far away if there is no roughness.
     smooth_push = push_at(prestress_integral(smooth_profile), CELL_MIDDLES.size - 1)
+    # More pulses with the roughness of the first ensemble are followed over a long distance.
     parts.append(long_distance_rows(under_stress[0], smooth_profile))
     for ensemble in under_stress:
         if ensemble is not smooth:
@@ -107,7 +108,10 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
 
 
 def ensembles_of(data: xr.Dataset, profiles: Iterable[dict]) -> Iterator[Ensemble]:
-    """Yield the ensembles of a sweep; ``profiles`` has the pre-stress profile of each run."""
+    """Yield the ensembles of a sweep. The runs of an ensemble differ only in the seed.
+
+    profiles : the pre-stress profile of each run
+    """
     ensembles: dict[tuple, Ensemble] = {}
     for run, profile in zip(runs_in(data), profiles, strict=True):
         run_parameters = {name: run.attrs[name] for name in RUN_KEYS}
@@ -227,7 +231,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     Only the right pulse counts. Its death and its velocity are compared with the integral of the
     pre-stress of its own run. The survival curve is compared with that of a random walk.
 
-    smooth_push : push (see `push_at`) that a pulse would have far away without roughness
+    smooth_push : push that a pulse has far away if there is no roughness, for the column push
     """
     parameters = ensemble.parameters
     cell_of_start = int(np.searchsorted(CELL_MIDDLES, START))
@@ -286,6 +290,7 @@ def predicted_survival(
     """Return the mean over all pulses of the probability to survive to each distance, by theory.
 
     pushes : push of each pulse (see `push_at`) at START, where its random walk begins
+    parameters : parameters of the ensemble of rough pre-stress
     """
     # The theory needs a positive distance, so distances up to START count as one cell beyond it.
     beyond_start = np.maximum(distances - START, CELL_WIDTH)
@@ -351,7 +356,7 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     exact_velocity : two waves meet at the crest. One left x_* and ran to the right. The other left
         the right front, and ran to the left. The velocity is half of the integral of the pre-stress
         between the points where they started.
-    is_crack : True if the blocks near the nucleation, at START, still slide
+    is_crack : True if the block at START, near the nucleation, still slides
 
     The argument ``integral`` has the integral of the pre-stress up to each of CELL_MIDDLES.
     """
@@ -360,19 +365,21 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     integral_to_front = float(np.interp(start_on_front, CELL_MIDDLES, integral))
     # x_* is the position on the left where the integral is smallest.
     integral_to_x_star = integral[CELL_MIDDLES < 0.0].min()
-    first_block_beyond_start = np.searchsorted(run["x"], START)
+    block = np.searchsorted(run["x"], START)
+    still_slides = np.isfinite(run["release_time"][block]) and np.isnan(run["stick_time"][block])
     return {
         "velocity": float(np.interp(crest, run["x"], run["slip_velocity"])),
         "exact_velocity": 0.5 * (integral_to_front - integral_to_x_star),
-        "is_crack": bool(np.isnan(run["stick_time"][first_block_beyond_start])),
+        "is_crack": bool(still_slides),
     }
 
 
 def crest_position(run: Recorded, integral: np.ndarray) -> float:
     """Return the position of the crest of the right pulse at the end of a run.
 
-    The crest runs to the right at the wave speed, 1. It started at x_* < 0 when the left front
-    arrived there and stopped. At x_* the integral of the pre-stress is smallest.
+    The crest is the point of largest velocity. It runs to the right at the wave speed, 1. It
+    started at x_* < 0 when the left front arrived there and stopped. At x_* the integral of the
+    pre-stress is smallest.
 
     integral : integral of the pre-stress up to each of CELL_MIDDLES
     """

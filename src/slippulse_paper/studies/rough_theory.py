@@ -103,7 +103,9 @@ def first_passage(
     push : push of each pulse at the beginning; the two arrays are broadcast against each other
     """
     variance_rate, drift = diffusivity(parameters), parameters["level"]
-    # The Brownian motion starts at this height above the level at which it must end.
+    # The Brownian motion starts at this height above the level at which it must end. MILNE is in
+    # units of deviation * correlation_length, which is variance_rate/(2 deviation) for exponential
+    # correlation.
     height = push + MILNE * variance_rate / (2.0 * parameters["deviation"])
     spread = np.sqrt(variance_rate * distance)
     # The method of images: a mirror image of the walk starts at -height, with this weight.

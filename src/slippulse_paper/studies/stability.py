@@ -78,7 +78,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
             "damping_ratio": damping_ratio,
             "derived": derived,
         }
-        for name, prestress in PROFILES.items():
+        for column, prestress in PROFILES.items():
             is_stable_fraction = partial(
                 is_stable,
                 derived_limit=derived,
@@ -88,9 +88,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
                 damping_ratio=damping_ratio,
             )
             fraction, place = largest_stable(is_stable_fraction)
-            row[name] = derived * fraction
-            row[f"{name}_ratio"] = fraction
-            row[f"{name}_limit"] = place
+            row[column] = derived * fraction
+            row[f"{column}_ratio"] = fraction
+            row[f"{column}_limit"] = place
         rows.append(row)
     return pd.DataFrame(rows)
 

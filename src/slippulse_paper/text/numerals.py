@@ -48,7 +48,7 @@ def rounded(value: float | None, digits: int = 4) -> str:
 def percent(value: float | None, digits: int = 2) -> str:
     """Write a fraction as a percentage, such as 12 % for 0.12.
 
-    A fraction is written as it is if the percentage would need a power of ten.
+    A fraction is written as it is if the percentage is so small that it needs a power of ten.
     """
     if value is None or math.isnan(value):
         return MISSING

@@ -68,7 +68,7 @@ def pulse_table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> 
         drawn_levels = spread_values(runs["left"], LEVEL_COUNT[boundary])
         runs = runs[runs["left"].isin(drawn_levels)]
         # A pulse that is not steady counts as flagged, and its state is the flag. Under a stress
-        # boundary, pulses have the state "none".
+        # boundary the state is always "none", which is no flag.
         is_steady = runs["pulse_state"].isin(["steady", "none"])
         flags = runs["run_flags"].where(is_steady, runs["pulse_state"])
         rows = [runs[PARAMETERS].assign(role="run", run=runs.index, run_flags=flags)]
@@ -198,7 +198,7 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         draw_prestress(velocity_axes, box, styled_runs(table), half_length_in_widths=5.0)
         # The exact acceleration has no bound at the front.
         acceleration_axes.set(xlim=(-4.0, 4.0), ylim=(-0.3, 3.0))
-    style.legend_below(figure, legend_entries(table), 6)
+    style.legend_below(figure, legend_entries(table), columns=6)
     return figure
 
 
@@ -223,10 +223,10 @@ def title(table: pd.DataFrame) -> str:
     Gamma is named under a displacement boundary, and b under a stress boundary, because neither
     colour nor line style shows it there.
     """
-    has_springs = table["panel"].iloc[0] == "displacement"
-    column = "gamma" if has_springs else "damping_ratio"
+    is_held = table["panel"].iloc[0] == "displacement"
+    column = "gamma" if is_held else "damping_ratio"
     values = ", ".join(f"{value:g}" for value in table[column].dropna().unique())
-    return rf"{style.conditions(held=has_springs)}, ${SYMBOLS[column]} = {values}$"
+    return rf"{style.conditions(held=is_held)}, ${SYMBOLS[column]} = {values}$"
 
 
 def draw_prestress(axes: Axes, box: Box, runs: pd.DataFrame, half_length_in_widths: float) -> None:

@@ -95,9 +95,13 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
 def ratio_inset(
     axes: Axes, box: Box, runs: pd.DataFrame, quantity: str, x_column: str, line_column: str
 ) -> Axes:
-    """Add an inset with the plot of `draw_ratio` and a legend to a panel, and return its axes.
+    """Add an inset to a panel that shows measured values divided by the formula, with a legend.
+
+    Return the axes of the inset.
 
     box : place of the inset in the panel
+    quantity : "length" or "time"
+    x_column, line_column : as in `draw_ratio`
     """
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
@@ -182,14 +186,15 @@ def damping_figure(table: pd.DataFrame) -> Figure:
         axes.set_title(title, loc="center")
         # The runs lie above the line of equality, so that the lower right corner is free.
         box = (0.52, 0.12, 0.26, 0.29)
-        inset = ratio_inset(axes, box, runs_of_insets, quantity, "damping_ratio", level_column)
+        columns = {"x_column": "damping_ratio", "line_column": level_column}
+        inset = ratio_inset(axes, box, runs_of_insets, quantity, **columns)
         _set_axis_of_damping_ratios(inset, ratios)
     handles = []
     for ratio, colour in zip(ratios, style.colour("damping_ratio", ratios), strict=True):
         handles.append(entry(f"$b = {ratio:g}$", marker="o", color=colour))
     label = f"exact, ${SYMBOLS[second_column]}$ = {middle:g} (insets)"
     handles.append(entry(label, color=BLACK, linewidth=0.8))
-    style.legend_below(figure, handles, len(handles))
+    style.legend_below(figure, handles, columns=len(handles))
     return figure
 
 
