@@ -165,7 +165,7 @@ def test_one_verdict_at_every_choice_is_the_verdict(over_all):
     assert over_choices(LENGTHS[0::2]).verdict() == "not reproduced"
     unsure = estimated("total", 0.0, 0.19, 0.05)
     reasons = {
-        "": "it is within the tolerance, but the deviation plus its uncertainty is not",
+        "": "the claim is within the tolerance, but the deviation plus its uncertainty is not",
         "so": "so",
     }
     for reason, words in reasons.items():
