@@ -50,6 +50,7 @@ def between_fronts(run: AnyRun, time: float) -> float:
     """Return the distance between the two fronts at a time; NaN if the time is NaN."""
     if np.isnan(time):
         return np.nan
+    # The function front_position returns the distance of a front from x = 0, on either side.
     return float(front_position(run, time, "right") + front_position(run, time, "left"))
 
 

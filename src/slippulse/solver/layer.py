@@ -419,9 +419,10 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return the fields that a layer needs for its damping: elastic, earlier and total stresses.
+    """Return the fields of a layer with damping.
 
-    Without damping these stresses are the same, so that the same arrays serve for all three.
+    They have its elastic stresses, the same one step before, and the stresses with damping. All
+    three share the velocities. Without damping, they are the same arrays.
     """
     if elastic.damping == 0.0:
         return DampedFields(fields, fields, fields)

@@ -505,9 +505,10 @@ def decay(alpha: float, xi_minus_g: np.ndarray, eta_minus_h: np.ndarray) -> np.n
 def kernel_function(stiffness: float, z: np.ndarray, z_at_ends: np.ndarray) -> Callable:
     """Return a function that computes, for an order 0, 1 or 2, the kernel K, K' or K'' at z.
 
-    z may also contain nodes that no integral uses. z_at_ends are the values on the first and the
-    last panel of each integral. If the stiffness is not negative, only these panels have nodes
-    that are used although z is negative. So the lowest z that is used is among these values.
+    z_at_ends are the values on the first and the last panel of each integral. The integral ends
+    within these panels, but uses all of their nodes. For a positive stiffness, z is negative at the
+    nodes beyond the ends, so the lowest z that is used is among z_at_ends. Lower values in z belong
+    to panels that an integral does not reach.
     """
     if stiffness < 0.0:
         return partial(_bessel, z)

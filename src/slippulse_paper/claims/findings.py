@@ -24,7 +24,7 @@ def findings(
 ) -> list[dict]:
     """Return each finding with its id, its numbers by name, its text and its source tables.
 
-    damping_ratio : damping ratio of the figures, which expressions may use under the name figures
+    damping_ratio : damping ratio of the figures; an expression can use it as ``figures``
     entries : text, source and expressions of each finding, from manuscript/claims.yaml
     """
     all_findings = []
@@ -47,7 +47,7 @@ def all_numbers(
 
     The result is empty if a changed configuration has no runs for some of the numbers.
 
-    damping_ratio : damping ratio of the figures, which expressions may use under the name figures
+    damping_ratio : damping ratio of the figures; an expression can use it as ``figures``
     expression_groups : arguments of `numbers`, one mapping for each table
     """
     values: dict[str, float] = {}
@@ -69,7 +69,7 @@ def numbers(
 ) -> dict[str, float]:
     """Evaluate expressions over the columns of one table; empty if no row is selected.
 
-    damping_ratio : damping ratio of the figures, which expressions may use under the name figures
+    damping_ratio : damping ratio of the figures; an expression can use it as ``figures``
     table : name of the table. If it is a simulation that has a grid study, its rows are those of
         `Evidence.finest`: the results of the grid study are added, and flagged runs are left out
     take : expressions by the name of the number

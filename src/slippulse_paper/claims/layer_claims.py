@@ -430,32 +430,37 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 def map_numbers(evidence: Evidence) -> dict[str, float]:
     """Return the conditions of the runs of `layer_map`, and how many of its pulses would split.
 
-    The pulses of the map are not followed as far as those of the part far. Little fracture energy
-    makes pulses split. So the pulses of a point count as splitting if one of the part far splits on
-    any grid, with the same gamma and level and at least the same fracture energy.
+    A point of the map is a pair of gamma and fracture energy. Its pulses are followed up to
+    last_position. Pulses of the part far are followed farther, and some of these split. A pulse
+    splits more easily if its fracture energy is smaller. So a point counts as splitting if, on any
+    grid, a pulse of the part far splits that has the gamma and level of the point, and at least its
+    fracture energy.
 
-    splitting_points : number of these points
-    splitting_from : smallest distance at which such a pulse of the part far splits
+    splitting_points : number of points that count as splitting
+    splitting_from : smallest distance at which one of these pulses of the part far splits
 
-    Distances are in units of H at the largest gamma, and in longer units at a smaller gamma.
+    Positions and distances are in units of H for the largest gamma of the map. Pulses are wider at
+    a smaller gamma, so there the unit is longer, in proportion to 1/sqrt(gamma).
     """
     points = evidence.tables["layer_map"]
     at_largest_gamma = points.loc[points["gamma"].idxmax()]
     conditions = ("level_below", "level_above", "step_position", "last_position", "coarse_cells")
     numbers = {name: float(at_largest_gamma[name]) for name in (*conditions, "cells")}
     far = rows_at_station(evidence, LAST).query("part == 'far'").dropna(subset=["split_position"])
-    positions = []
+    distances = []
+    # No pulse can exist if the fracture energy is larger than the energy that is released, 1.
     for point in points[points["fracture_energy"] < 1.0].itertuples():
         is_alike = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
         split = far[is_alike & (far["fracture_energy"] >= point.fracture_energy)]
         if len(split):
-            # The unit of distances at this gamma, in units of H.
+            # The unit of distances at this gamma, divided by H. All points have the same step
+            # position in their units.
             unit = point.step_position / numbers["step_position"]
-            positions.append(float(split["split_position"].min()) / unit)
+            distances.append(float(split["split_position"].min()) / unit)
     return numbers | {
         "level": float(at_largest_gamma["tau0"]),
-        "splitting_points": float(len(positions)),
-        "splitting_from": min(positions, default=np.nan),
+        "splitting_points": float(len(distances)),
+        "splitting_from": min(distances, default=np.nan),
     }
 
 

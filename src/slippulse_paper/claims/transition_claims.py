@@ -191,13 +191,13 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
     new_names : new names of the columns, by their names in the table
     """
     # The width of the nucleation is the only length. So the ratios of measured and estimated
-    # numbers are equal in all runs of a level, and one of the runs is enough.
+    # numbers are equal in all runs of a level, and one of the runs is enough. On a lattice the
+    # widest nucleation contains the most blocks.
     widest = table.sort_values("width").drop_duplicates("left", keep="last")
     widest = widest.rename(columns=new_names)
     if "covered" not in widest:
-        # An exact solution is measured when the front has covered a fraction of |x_minus|. Its
-        # table has the estimated time for all of this distance, which is equal to the distance
-        # because the paper assumes the speed 1.
+        # An exact solution is measured when the front has covered a fraction of |x_minus|. At the
+        # speed 1 the estimated time in its table is equal to |x_minus|.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
     # The new estimates are for the covered distance. At speed 1 the left front needs a time equal
     # to it. Since the right front has run equally far, the fronts are twice as far apart.
@@ -252,12 +252,13 @@ class JudgedEstimate(NamedTuple):
 
     combinations : the result at each combination of choices
     from_exact : deviations of our lattices from exact theory
-    arrow : length of the arrow in figure 4 divided by the estimate; empty if there is no arrow
+    arrow_ratio : length of the arrow in figure 4 divided by the estimate, and its reading error;
+        empty if there is no arrow
     """
 
     combinations: list[Combination]
     from_exact: Spread
-    arrow: dict[str, float]
+    arrow_ratio: dict[str, float]
 
 
 def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) -> JudgedEstimate:
@@ -271,14 +272,15 @@ def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) ->
     return JudgedEstimate(
         combinations=judge_each(runs, judge),
         from_exact=evidence.deviation_from_exact(f"scaling_{boundary}", f"transition_{quantity}"),
-        arrow=arrow_of_figure_4(evidence, boundary, quantity),
+        arrow_ratio=arrow_of_figure_4(evidence, boundary, quantity),
     )
 
 
 def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[str, float]:
-    """Return the length of an arrow in figure 4 divided by the estimate; empty if there is none.
+    """Return the length of an arrow in figure 4 divided by the estimate, and its reading error.
 
-    The figure has a panel for each boundary. Arrows show the time or length of the transition.
+    The figure has a panel for each boundary. Arrows show the time or length of the transition. The
+    result is empty if this one has no arrow.
     """
     name = f"arrow_{quantity}_stress" if boundary == "stress" else f"arrow_{quantity}"
     reading = evidence.readings.get(name)
@@ -293,12 +295,14 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
 
 
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """Judge an estimate of the transition under a displacement boundary, by both criteria.
+    """Judge the paper's estimate of the transition under a displacement boundary, by both criteria.
 
     The transition is at the first stick, or when the slip at x = 0 reaches the value by which the
     paper defines T_trans. Not all runs reach this value, so the claim also shows how many do.
+
+    quantity : "time" or "length"
     """
-    combinations, from_exact, arrow = judge_estimate(evidence, id, "displacement", quantity)
+    combinations, from_exact, arrow_ratio = judge_estimate(evidence, id, "displacement", quantity)
     # Count the runs that reach the slip by which the paper defines T_trans.
     runs = evidence.finest("scaling_displacement")
     at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
@@ -321,7 +325,7 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     return over_choices(
         combinations,
         from_exact=from_exact,
-        further=further | arrow,
+        further=further | arrow_ratio,
         template_values=template_values,
     )
 
@@ -343,13 +347,16 @@ def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, 
 
 
 def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
-    """Judge an estimate of the arrest, under a stress boundary.
+    """Judge the paper's estimate of the arrest of the left front, under a stress boundary.
 
     It is judged for each fraction of the path at which the front may count as arrested, and at the
-    last release. The claim also shows the median ratio for each of these.
+    last release. The claim also shows the median ratio of measured and estimated numbers for each
+    of these, and the length of the arrow in figure 4 divided by the estimate.
+
+    quantity : "time" or "length"
     """
-    combinations, from_exact, arrow = judge_estimate(evidence, id, "stress", quantity)
-    further = arrow | described_median_ratios(combinations)
+    combinations, from_exact, arrow_ratio = judge_estimate(evidence, id, "stress", quantity)
+    further = arrow_ratio | described_median_ratios(combinations)
     return over_choices(combinations, from_exact=from_exact, further=further)
 
 

@@ -67,7 +67,7 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "promise" in numerical and has_own_spacing:
         # NaN means that no accuracy is promised.
         numerical["promise"] = math.nan
-    # A grid study replaces the factor coarser by that of the spacing of a coarser lattice.
+    # The factor coarser is 1 except in a grid study, whose lattices are coarser by this factor.
     return {**defaults, **given, "accuracy": numerical, "coarser": 1.0}
 
 

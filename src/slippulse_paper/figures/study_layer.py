@@ -102,10 +102,12 @@ def drawn_pulses(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the velocity in the layer (a), numbers of pulses (b to f), and a map of outcomes (g).
+    """Draw the velocity in the layer (a), and the measured properties of pulses (b to g).
 
-    The numbers are speed, width and slip (b, c, d), the time of sliding (e), and the width if the
-    strength depends on the normal stress (f).
+    b, c, d : speed, width and slip
+    e : sliding time of a point, also if the top of the layer is free to rise (part free)
+    f : width if the strength depends on the normal stress (part coupled)
+    g : what a pulse does, such as "steady", for each gamma and fracture energy (part map)
     """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.7, "aaa;bcd;efg", height_ratios=(0.9, 2.3, 2.3))
     field_axes, *pulse_panels, time_axes, coupled_axes, map_axes = panels

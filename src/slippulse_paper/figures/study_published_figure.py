@@ -76,15 +76,17 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a) chi-square and (b, c) confidence regions by damping ratio, and (d) pulls.
+    """Draw chi-square (a) and confidence regions (b, c), and the pulls of the best fits (d).
 
-    A pull is the difference between the best fit and a reading, divided by the reading error.
+    The horizontal axis of (a) to (c) is the damping ratio. Panel (a) also marks the fit with the
+    settings of the authors' public notebook.
     """
     figure, panels = new_panels(PAGE_WIDTH, 4.7, "abc;ddd", height_ratios=(1.0, 0.8))
     chi2_axes, tau0_axes, gamma_axes, pull_axes = panels
     # The interpolated fits and the best fit of each release rule.
     curves = dict(iter(table[table["part"] == "curve"].groupby("release")))
     best_fits = dict(iter(table[table["part"] == "best"].groupby("release")))
+    # The weight is 0 for readings that were not fitted.
     notebook = table[(table["part"] == "notebook") & (table["weight"] > 0.0)]
     _draw_chi2(chi2_axes, curves, best_fits, notebook)
     our_scene = table[table["part"] == "ours"].iloc[0]
@@ -94,6 +96,7 @@ def draw(table: pd.DataFrame) -> Figure:
         axes.plot(our_scene["damping_ratio"], our_scene[parameter], "x", **look)
     tau0_axes.set_ylabel(r"pre-stress $\tau_0$")
     gamma_axes.set_ylabel(r"elasticity ratio $\gamma$")
+    # Nothing is filled here. The legend gets one grey entry for each confidence level.
     for level, alpha in zip(CONFIDENCE_LEVELS, (0.6, 0.25), strict=True):
         tau0_axes.fill_between([], [], color=GREY, alpha=alpha, label=f"{level:.0%}")
     tau0_axes.legend(loc="upper left")

@@ -100,9 +100,11 @@ def code(names: Iterable[str]) -> str:
 
 
 def verdicts(lines: Iterable[Line]) -> str:
-    """Return the table of the answer: topics of the paper, linked verdicts, and what was found.
+    """Return the table that sums up the replication, with one row for each topic of the paper.
 
-    lines : from `texts.judged_lines`
+    A row has the topic, its verdicts with links to their claims, and what was found.
+
+    lines : lines of the summary, from `texts.judged_lines`
     """
     rows = []
     for line in lines:
@@ -113,9 +115,9 @@ def verdicts(lines: Iterable[Line]) -> str:
             links.append(f"{link} {subjects}".strip())
         rows.append((line.topic, "; ".join(links), line.text))
     columns = [
-        text_column("what the paper says", 28),
-        text_column("verdict", 16),
-        text_column("what was found", 56),
+        text_column("what the paper says", 22),
+        text_column("verdict", 26),
+        text_column("what was found", 52),
     ]
     return table(columns, rows)
 

@@ -50,7 +50,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     map : exact and estimated depths, by the levels before the barrier and in it
     depth : depth of a barrier without end, exact and on lattices, by spacing
-    passing : barriers of several lengths; measured is 1 if the pulse has passed, else 0
+    passing : barriers of several lengths, each divided by the exact depth; measured is 1 if the
+        pulse has passed, else 0
     """
     map_rows = [
         exact_row(tau0, barrier, MAP_GAMMA, damping_ratio)
@@ -83,7 +84,10 @@ def rows_by_spacing(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, 
 
 
 def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, Any]]:
-    """Return one row for each length of a barrier; measured is 1 if a pulse passes it, else 0.
+    """Return one row for each length of a barrier, with whether a pulse passes it.
+
+    The column length has the length divided by the exact depth, from RELATIVE_LENGTHS. The column
+    measured is 1 if the pulse passes, else 0.
 
     case : a row of `exact_row`, with the parameters and the exact depth
     pulse : the exact steady pulse before the barrier
@@ -91,8 +95,9 @@ def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, A
     rows = []
     for relative_length in RELATIVE_LENGTHS:
         has_passed = passes(case, pulse, relative_length)
-        row = {"part": "passing", "paper": math.nan, "dx": PASSING_SPACING}
-        row |= {"length": relative_length, "measured": float(has_passed)}
+        row = {"part": "passing", "dx": PASSING_SPACING, "length": relative_length}
+        # The column paper would have the estimate of the depth, which is not measured here.
+        row |= {"measured": float(has_passed), "paper": math.nan}
         rows.append(case | row)
     return rows
 

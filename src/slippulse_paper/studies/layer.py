@@ -252,7 +252,8 @@ def extended(scene: LayerScene, speed: float) -> LayerScene:
 def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int = 1) -> Rows:
     """Return the rows of one run at FAR_STATIONS, with columns that show whether the pulse split.
 
-    In a split pulse, points stick early, behind its narrow tip, and later slide again.
+    In a split pulse, points stick early, behind its narrow tip, and later slide again. The argument
+    ``part`` is the value of the column part in all rows.
 
     split_position : distance at which a point first sticks early, between the first and the last
         station; NaN if none does
@@ -422,6 +423,7 @@ def rows_at_stations(
 ) -> Rows:
     """Measure a pulse at fixed positions on the fault, on each grid.
 
+    part : value of the column part in all rows
     grids : numbers of cells over the height, the coarsest grid first
     stations : positions at GAMMA; at the gamma of the scene they are farther out by `stretch`
     """
@@ -466,6 +468,7 @@ def rows_along_path(
 ) -> Rows:
     """Measure a rupture at FRACTIONS_OF_PATH of the path of its front, on each grid and side.
 
+    part : value of the column part in all rows
     grids : numbers of cells over the height
     sides : 1 for the right side of x = 0, -1 for the left
     """
@@ -493,6 +496,7 @@ def measured_rows(
 
     The numbers are those of the whole run and those of the pulse at the position.
 
+    part : value of the column part in all rows
     side : 1 if the positions are on the right side of x = 0, -1 if they are on the left
     """
     tau0, gamma = scene.prestress.right, scene.gamma

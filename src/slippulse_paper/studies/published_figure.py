@@ -117,7 +117,9 @@ def left_panel_rows(panel: "LeftPanel", release: str, part: str) -> pd.DataFrame
 def right_panel_rows(
     largest_velocity: pd.DataFrame, damping_ratio: float, release: str
 ) -> pd.DataFrame:
-    """Compare the largest velocity in the right panel with that of a lattice run.
+    """Return a row that compares the largest velocity in the right panel with a lattice run.
+
+    The run has the pre-stress that was read off the panel. Nothing is fitted.
 
     largest_velocity : the reading of the largest velocity, as a table with one row
     """
@@ -134,6 +136,7 @@ def right_panel_rows(
         max_step=MAX_STEP,
         order=ORDER,
     )
+    # The left front never runs beyond the balance position.
     run = sampled_run(scene, left=crack.balance_position)
     velocity = float(run["sample_velocity"].max())
     # The exact value of the largest velocity does not depend on the damping.
@@ -150,8 +153,9 @@ def right_panel_rows(
         exact=exact,
         correction=velocity - exact,
         pull=pull,
+        # This reading shares no error with another one.
         independent_pull=pull,
-        # It is only compared.
+        # A reading that is not fitted has the weight 0.
         weight=0.0,
     )
 
@@ -283,7 +287,8 @@ class LeftPanel:
 
         Each row has the best tau_0 and gamma, their errors, and the values and pulls of the
         reading at this optimum. A pull is a deviation from the reading, divided by its error. The
-        fit uses combinations of the pulls that have independent errors.
+        fit uses combinations of the pulls that have independent errors. The weight is 1 if the
+        reading is fitted, and 0 if it is only compared with the fit.
 
         guess : tau_0 and gamma at which the fit begins
         with_arrows : whether the lengths of arrows are fitted, too

@@ -149,10 +149,12 @@ def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
     slip was recorded, it also compares slip and front speed with those of steady pulses. The part
     survival has one curve for the pulses of both sides.
     """
+    # The distance at which the rough pre-stress ends.
     stop = ensemble.parameters["stop"]
     fates = []
     for run in ensemble.runs:
         fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
+    # Deaths are counted from START on, which is beyond the region that the nucleation reaches.
     row = {"part": "ensemble"} | death_rate(fates, START) | barrier_rate(ensemble.parameters)
     if "slip" in ensemble.runs[0]:
         row |= steady_pulse_comparison(ensemble)
