@@ -241,10 +241,13 @@ def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: fl
         width * math.sqrt(demand.error / speed_error),
         demand.error / transition_error_per_dx,
     ]
+    # If the demand includes the width, the slip and the peak velocity of the pulse at the end.
     if demand.fields:
-        # The errors of pulse width, slip and peak velocity are this constant times dx/width.
-        pulse_error = max(PULSE_PER_FRONT / (level * speed**2), PULSE_PER_LAYER * layer)
-        spacings.append(demand.error * width / pulse_error)
+        # Each of these errors is a constant times dx/width. The front covers up to
+        # 1/(2 tau_0 v^2) blocks of the pulse width, where tau_0 is the level.
+        width_error = PULSE_PER_FRONT / (level * speed**2)
+        slip_and_peak_error = PULSE_PER_LAYER * layer
+        spacings.append(demand.error * width / max(width_error, slip_and_peak_error))
     return spacings
 
 
@@ -285,6 +288,7 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
         if not prestress.steps:
             transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / transition_error)
+        # If the demand includes the slip velocity at the end.
         if demand.fields:
             velocity_error = VELOCITY_ERROR + VELOCITY_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / velocity_error)

@@ -78,7 +78,8 @@ class SteadyRupture:
 class _VelocityMinimum(NamedTuple):
     """The first minimum of slip velocity behind its peak.
 
-    bracket has the positions of the two samples around it; it is empty if there is no minimum.
+    bracket has the positions of the two samples around it, the one nearer to the front first; it is
+    empty if there is no minimum.
     stops_before is True if the slip stops before the minimum.
     """
 
@@ -221,7 +222,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         """Return 1 if the speed v is too high for a steady rupture, and -1 if it is too low.
 
         If it is too low, slip velocity falls to 0 before its first minimum. If it is too high, slip
-        velocity is above 0 at the minimum, and grows behind it.
+        velocity is still above 0 at the minimum, and grows again farther behind the front.
         """
         zone_end, slip_beyond_zone = _weakening_zone_and_slip_beyond(
             v, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
@@ -245,10 +246,12 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
     )
     minimum = slip_beyond_zone.first_velocity_minimum()
+    # In these two cases the rupture never sticks: the slip tends to tau_0/gamma and creeps on for
+    # ever, or slip velocity has no minimum at which it could be 0.
     if slip_beyond_zone.creeps_forever() or not minimum.bracket.size:
         return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
     # The pulse sticks at the minimum of slip velocity, where U'' = 0. At the speed of the steady
-    # rupture, slip velocity is 0 there too.
+    # rupture, slip velocity is 0 there too. The bracket has a sample on each side of the minimum.
     nearer, farther = minimum.bracket.tolist()
     stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
     final_slip = float(slip_beyond_zone.evaluate(stick))

@@ -177,8 +177,9 @@ class PanelNodes(NamedTuple):
 class DependenceDomains:
     """The domains of dependence of points (y, time) behind a curve, and the fields at the points.
 
-    The domain of a point is the part of the curve in its past. Every field is an integral over it
-    (`_integrate`). The integrand is a function of `PanelNodes`. y and time are flat arrays.
+    The domain of a point is the part of the curve in its past. Every field is an integral over it.
+    Each method defines the integrand without the decay factor E, as a function of `PanelNodes`, and
+    `_integrate` multiplies it by E. y and time are flat arrays.
 
     The symbols in the methods are those of the module docstring: the decay factor E, the kernel K,
     the curve t = T(x), g = T - x, h = T + x, xi = t - y, eta = t + y, and a static solution p(x).
@@ -213,8 +214,9 @@ class DependenceDomains:
             by xi:   k Int tau E K' (eta - h) dx - (E tau dx/dg at x_l) - alpha/2 du/dt,
             by eta:  k Int tau E K' (xi - g) dx  + (E tau dx/dh at x_r) - alpha/2 du/dt.
 
-        The second terms arise because x_l (where g = xi) and x_r (where h = eta) move. The last
-        ones arise from the decay factor E = exp(-alpha/4 [(xi - g) + (eta - h)]).
+        The second terms arise because x_l (where g = xi) and x_r (where h = eta) move. K is 1
+        at both ends, because its argument is 0 there. The last terms arise from the decay factor
+        E = exp(-alpha/4 [(xi - g) + (eta - h)]).
         """
         decay_left, decay_right = self._decay_at_ends()
         # E tau dx/dg at x_l, and E tau dx/dh at x_r.
@@ -229,7 +231,8 @@ class DependenceDomains:
         def kernel_terms(nodes: PanelNodes) -> np.ndarray:
             """Return tau K' (eta - h) and tau K' (xi - g), each times dx/ds, at nodes of the curve.
 
-            K' is the derivative of the kernel. The source is tau dx/ds.
+            K' is the derivative of the kernel. The source is tau dx/ds. `_integrate` multiplies the
+            result by E.
             """
             source_times_slope = nodes.kernel(1) * source[nodes.panels].ravel()
             return np.stack(
@@ -266,11 +269,12 @@ class DependenceDomains:
         k, alpha = self.stiffness, self.alpha
 
         def braces(nodes: PanelNodes) -> np.ndarray:
-            """Return the integrand of the formula for the slip, at nodes of the curve:
+            """Return the braces in the formula for the slip, at nodes of the curve:
 
-            -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh],
+            { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] },
 
-            where d means d/ds, the derivative by the parameter of the curve.
+            where d means d/ds, the derivative by the parameter of the curve. `_integrate`
+            multiplies the result by E.
             """
             p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
             kernel, kernel_slope = nodes.kernel(0), nodes.kernel(1)
@@ -308,18 +312,20 @@ class DependenceDomains:
             return strain
 
         def derivative_of_braces(nodes: PanelNodes) -> np.ndarray:
-            """Return the derivative by y of the integrand of the formula for the slip:
+            """Return the derivative by y of the braces in the formula for the slip:
 
-            -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh],
+            { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] },
 
-            where d means d/ds, the derivative by the parameter of the curve.
+            where d means d/ds, the derivative by the parameter of the curve. `_integrate`
+            multiplies the result by E.
             """
             p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
             kernel_slope, kernel_curvature = nodes.kernel(1), nodes.kernel(2)
-            # In the first term, K changes. alpha/2 p dx is alpha/4 p (dh - dg).
+            # In the first term, only K depends on y. Since x = (h - g)/2, alpha/2 p dx is
+            # alpha/4 p (dh - dg).
             factor_of_kernel = -dp_dx * dt_ds - 0.25 * alpha * p * (dh_ds - dg_ds)
             by_kernel = kernel_slope * (k * factor_of_kernel)
-            # In the second term, both K' and the square bracket change.
+            # In the second term, K' and the square bracket depend on y.
             p_times_bracket = nodes.eta_minus_h * (p * dg_ds) - nodes.xi_minus_g * (p * dh_ds)
             by_kernel_slope = k**2 * kernel_curvature * p_times_bracket
             by_bracket = kernel_slope * (k * p * (dg_ds + dh_ds))

@@ -22,14 +22,16 @@ SLIP_WEAKENING_LEVEL = 0.5
 def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether the lattice of Burridge and Knopoff has pulses under both boundary conditions.
 
-    There should be runs with two pulses if it has leaf springs, and with one pulse if it has none.
+    With leaf springs at least one run should have two pulses, and without them at least one run
+    should have one pulse. The caveat is that pulses with leaf springs are wider than one block.
     """
-    # Unlike `Evidence.finest`, these tables have the runs that are flagged since they died out.
+    # All runs count here. Some ruptures die out, and their runs have a flag for this. Other claims
+    # leave flagged runs out.
     with_springs = evidence.tables["burridge_knopoff_chain"]
     without_springs = evidence.tables["burridge_knopoff_stress"]
     two_way = with_springs[with_springs["regime"] == TWO_WAY]
     one_way = without_springs[without_springs["regime"].str.startswith("pulse, one-way")]
-    # The paper says that pulses are one block wide, so that one block slides at a time.
+    # The paper says that pulses are one block wide. Then one block would slide at a time.
     fewest_blocks = two_way["sliding_at_once"].min()
     most_blocks = two_way["sliding_at_once"].max()
     most_without_springs = one_way["sliding_at_once"].max()

@@ -224,14 +224,16 @@ def median_ratio_by_fraction(combinations: Sequence[Combination]) -> dict[float 
 
 
 def described_median_ratios(combinations: Sequence[Combination]) -> dict[str, float]:
-    """Return the median ratio of measured and estimated numbers for each end of the path.
+    """Return the result of `median_ratio_by_fraction`, with a label as the key of each ratio.
 
-    The numbers are those of `median_ratio_by_fraction`. The keys are labels for the table of
-    claims, in alphabetical order, such as "median ratio, end at last release".
+    The paper leaves open at which point of its path the left front counts as arrested: after a
+    fraction of the path, or at the last release. The claim is judged with each of these ends, and
+    has one median ratio of the measured and the estimated number for each. The labels, such as
+    "median ratio, end at last release", are shown in the table of claims, in alphabetical order.
     """
     by_label = {}
     for fraction, median in median_ratio_by_fraction(combinations).items():
-        # A fraction that is a text, such as "last release", is already in words.
+        # The fraction is a number, or the text LAST_RELEASE_FRACTION, which is already in words.
         end = fraction if isinstance(fraction, str) else f"{text_of_value(fraction)} of the path"
         by_label[f"median ratio, end at {end}"] = median
     return dict(sorted(by_label.items()))

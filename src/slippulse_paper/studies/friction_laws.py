@@ -48,8 +48,8 @@ STEP_OVER_DX, FINE_STEP_OVER_DX = 0.1, 0.0127
 # A pulse counts as sticking if its slip is larger than tau_0/gamma by this factor. With less slip,
 # waves that remain from the nucleation make blocks stick at irregular times.
 MIN_OVERSHOOT = 1.01
-# In a running rupture, front and trailing edge advance by more than this factor during the second
-# half of the run.
+# In a running rupture, the path of the front becomes longer by more than this factor during the
+# second half of the run. The same holds for the distance of the trailing edge from the centre.
 MIN_GROWTH = 1.1
 # Regime of a rupture that stops soon after its nucleation.
 NO_RUPTURE = "no rupture"
@@ -217,9 +217,11 @@ def _late_front_speed(right: xr.Dataset) -> float:
 def _regime(right: xr.Dataset, balance_slip: float, still_fraction: float) -> str:
     """Return the regime of a rupture, from its right side.
 
-    - No rupture: the front hardly advances in the second half of the run (by MIN_GROWTH or less).
-    - Sticking pulse: the trailing edge advances, and the slip behind it is larger than
-      ``balance_slip``. So much slip remains only if friction holds the blocks against the springs.
+    - No rupture: the front hardly advances in the second half of the run. At the end its path is
+      at most MIN_GROWTH times as long as halfway.
+    - Sticking pulse: the trailing edge advances by a larger factor than MIN_GROWTH, and the slip
+      behind it is larger than MIN_OVERSHOOT times ``balance_slip``. So much slip remains only if
+      friction holds the blocks against the springs.
     - Creeping pulse: blocks do not stick in this way, but the centre is nearly at rest at the end.
     - Crack: the centre still slides at the end.
 
