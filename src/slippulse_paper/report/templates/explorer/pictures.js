@@ -67,8 +67,7 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
     state.push("α is beyond αc: no pulse is steady, and the part that slides becomes ever wider.");
   }
   if (limits.length) {
-    state.push("In the blank wedges the solution is unknown,"
-      + " since the trailing edge there becomes slower than the waves.");
+    state.push("Blank wedges are unknown, since the trailing edge is slower than the waves.");
   }
   at("state").textContent = state.join(" ");
   const speeds = `${format(exact.speed)} on the right and ${format(exact.speedLeft)} on the left`;
