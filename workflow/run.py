@@ -409,5 +409,7 @@ def files_without_job(known_files: set[str]) -> set[str]:
 
 
 if __name__ == "__main__":
+    # Until a run starts, an interrupt ends this process at once, and without a traceback.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
     commands = {"replicate": replicate, "verify": verify, "rulegraph": rulegraph}
     sys.exit(commands[sys.argv[1]](os.environ))

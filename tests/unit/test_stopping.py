@@ -100,3 +100,18 @@ def test_a_waiting_process_gets_the_lock_when_its_holder_ends(tmp_path, end):
     getattr(first, end)()
     first.wait()
     assert second.communicate(timeout=30)[0] == "mine\n" and second.returncode == 7
+
+
+def test_an_interrupt_before_a_run_has_started_prints_no_traceback(tmp_path):
+    """A module that waits takes the place of one that `make replicate` loads for an overlay."""
+    waits = "import time\nprint('loads', flush=True)\ntime.sleep(60.0)\n"
+    (tmp_path / "pydantic.py").write_text(waits, encoding="utf-8")
+    script = Path(__file__).resolve().parents[2] / "workflow/run.py"
+    environment = os.environ | {"PYTHONPATH": str(tmp_path), "OVERLAY": "mine.yaml"}
+    command = [sys.executable, str(script), "replicate"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(command, env=environment, cwd=tmp_path, text=True, **pipes) as run:
+        assert run.stdout.readline() == "loads\n"
+        run.send_signal(signal.SIGINT)
+        _, errors = run.communicate(timeout=20.0)
+    assert run.returncode == -signal.SIGINT and errors == ""
