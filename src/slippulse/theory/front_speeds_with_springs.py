@@ -81,7 +81,7 @@ def lattice_front_speed(
         gamma_dx2=gamma_dx2,
         alpha_dx=alpha_dx,
     )
-    speed = _speed_nearly_one(tau0, front_law)
+    speed = _speed_if_prestress_nearly_one(tau0, front_law)
     if speed is not None:
         return speed
     min_log_excess, least_prestress = _least_prestress(tau0, front_law)
@@ -99,7 +99,7 @@ def lattice_front_speed(
     return float(speeds_into(np.array([float(tau0)]), front_law, min_log_excess)[0])
 
 
-def _speed_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
+def _speed_if_prestress_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
     """Return the front speed into pre-stress next to 1, to first order in the leaf springs.
 
     The result is None if tau0 is not so near to 1, or if leaf springs or drag are not small.
@@ -107,6 +107,7 @@ def _speed_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
     gamma_dx2, release = front_law.gamma_dx2, front_law.release
     damping_ratio = float(front_law.damping_ratios[0])
     is_near = 1.0 - tau0 < NEARLY_ONE_DISTANCE
+    # Without damping the caller has a closed form.
     if not (is_near and damping_ratio > 0.0 and gamma_dx2 <= MAX_GAMMA_DX2):
         return None
     speed = front_speed(tau0, damping_ratio, release)
@@ -165,7 +166,7 @@ def _least_prestress(tau0: float, front_law: FrontLaw) -> tuple[float, float]:
     above it, the values of the slowest front are returned without a search.
     """
     if front_law.gamma_dx2 > MAX_GAMMA_DX2:
-        # No front outruns the waves, as if the least pre-stress were 1.
+        # No front outruns the waves, as if the least pre-stress were 1. ln(v - 1) is not used then.
         return 0.0, 1.0
     # ln(v - 1) and the pre-stress of the slowest front.
     slowest = _slowest_log_excess(front_law)

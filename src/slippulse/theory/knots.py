@@ -85,7 +85,8 @@ class Knots(NamedTuple):
         """One position in each interval in which the edge may become slower than the waves.
 
         This is where the size of its slope exceeds 1. It is possible if the steepest slope at the
-        two ends exceeds 1 when the change of the slope between the ends is added.
+        two ends exceeds 1 when the change of the slope between the ends is added. The position is
+        not in the middle, which has been checked before.
         """
         k = np.arange(self.x.size - 1)
         steepest_end = np.abs([self.slope[:-1], self.slope[1:]]).max(axis=0)
@@ -115,7 +116,8 @@ class Knots(NamedTuple):
 
         It jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
         although it is not known to be slow there. Its speed must be known at both knots, which it
-        is not at a BRIEF_SLIP. A change from faster to slower than the waves counts as a jump.
+        is not at a BRIEF_SLIP (a knot that sticks too soon after its release). A change from faster
+        to slower than the waves counts as a jump.
         """
         duration = np.abs(self.stick[k + 1] - self.stick[k])
         length = self.x[k + 1] - self.x[k]

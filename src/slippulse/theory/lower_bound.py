@@ -171,9 +171,9 @@ def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.nd
 def _integrals_from_left_end(density: np.ndarray, ends: Sequence[Crossing]) -> np.ndarray:
     """Return the integrals of a density from the left end of the curve to several points on it.
 
-    Each element of ends has one point for each pair of positions a and b. The result has a row for
-    each element, and a column for each pair. The density is a function per unit of the parameter of
-    each panel, given at the nodes.
+    All elements of ends have the same number of points. The result has a row for each element, and
+    a column for each point. The density is a function per unit of the parameter of each panel,
+    given at the nodes.
     """
     panel = np.concatenate([end.panel for end in ends])
     s = np.concatenate([end.s for end in ends])

@@ -151,7 +151,8 @@ def _integrate_over_left(
     growth = np.exp(rate * (x - edges[:-1, None]))
     decay_over_panel = np.exp(-rate * np.diff(edges))
     added_by_panel = decay_over_panel * ((source * growth) @ WEIGHTS)
-    # On the left of the curve, tau keeps the value at the first node, so that I is tau/rate.
+    # On the left of the curve, where tau does not matter, it is assumed to keep the value at the
+    # first node, so that I is tau/rate.
     first_tau = float(source[0, 0] / (NODES_TO_DERIVATIVES[0] @ x[0]))
     at_left_ends = [first_tau / rate]
     for panel in range(len(x) - 1):
@@ -317,7 +318,7 @@ class DependenceDomains:
             { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] },
 
             where d means d/ds, the derivative by the parameter of the curve. `_integrate`
-            multiplies the result by E.
+            multiplies the result by E, which does not depend on y.
             """
             p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
             kernel_slope, kernel_curvature = nodes.kernel(1), nodes.kernel(2)

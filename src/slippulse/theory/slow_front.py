@@ -193,8 +193,9 @@ def _first_event(x: np.ndarray, mark: float, end_was_moved: bool) -> Event:
     """Return the first event of a front on a chunk of entries: it stops, or it reaches the mark.
 
     x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
-    The front stops where dx/ds is 0. If the end of the chunk was moved to an event before, this
-    event may now lie a little beyond the end, at s > 1.
+    The front stops where dx/ds is 0. The mark is the position where the negative pre-stress ends;
+    it may be infinite. If the end of the chunk was moved to an event before, this event may now lie
+    a little beyond the end, at s > 1.
     """
     largest_s = SEARCH_LIMIT if end_was_moved else 1.0
     stops = _roots_on_chunk(NODES_TO_DERIVATIVES @ x, largest_s)
@@ -206,9 +207,9 @@ def _first_event(x: np.ndarray, mark: float, end_was_moved: bool) -> Event:
 def _ends_at_event(event: Event, move_count: int) -> bool:
     """Return True if a chunk of entries ends close enough to the event that was found on it.
 
-    move_count is the number of times that the end of the chunk was moved to an event. It is moved
-    at least once, even if the event is at the end already. If it was moved often without success,
-    a larger distance is accepted.
+    move_count is the number of times that the end of the chunk was moved to an event. If it is 0,
+    the result is False, because the chunk can end at the event only by chance. If the end was moved
+    often without success, a larger distance is accepted.
     """
     tolerance = EVENT_NEAR_END if move_count > MAX_EXACT_MOVES else EVENT_AT_END
     # The parameter s of the chunk is 1 at its end.
@@ -578,13 +579,13 @@ class SlowFront:
         return float(self.curve.evaluate(name, panel, s, order)[0])
 
     def panel_until_arrival(self, entry: Entry) -> Panel | None:
-        """Return a panel for the time in which the front waits for the wave from an entry.
+        """Return a panel that leads the front from now to the arrival of the wave from an entry.
 
-        Until then only waves arrive that were skipped, because all of them together move the front
-        by a negligible distance, ``entry.skipped_motion``. None if no entry was skipped, or if the
-        wave has arrived already.
+        On it the front is moved only by waves from entries that were skipped before this one. All
+        of them together move it by the negligible distance ``entry.skipped_motion``. The result is
+        None if no entry was skipped, or if the wave has arrived already.
         """
-        # T - x does not change along the wave.
+        # The front is now at (x0, t0). T - x does not change along the wave.
         t_minus_x = self.value_at("t_minus_x", entry)
         x_end = self.x0 + entry.skipped_motion
         time_end = t_minus_x + x_end
