@@ -13,9 +13,6 @@ from .front_speeds import front_speed
 from .part import Part
 from .two_fronts import ExactTransition, fast_fronts
 
-# Largest length of a front in uniform pre-stress, in units of 1/sqrt(gamma).
-MAX_REACH = 10_000
-
 
 def exact_transition_displacement(
     prestress: Prestress, gamma: float, damping_ratio: float = 0.0, release: str = "total"
@@ -74,7 +71,10 @@ def exact_transition_displacement(
 
 
 def _distance_to_uniform(prestress: Prestress) -> float:
-    """Return the distance from x = 0 beyond which the pre-stress is uniform."""
+    """Return the distance from x = 0 beyond which the pre-stress is uniform.
+
+    At 20 widths from its centre, a Gaussian is smaller than any rounding error.
+    """
     ends_of_gaussians = [abs(centre) + 20.0 * width for centre, width in prestress.gaussians]
     steps_and_points = [abs(x) for x, _ in (*prestress.steps, *prestress.points)]
     return max([0.0, *ends_of_gaussians, *steps_and_points])
@@ -109,9 +109,8 @@ def uniform_transition_time(
     # A tiny tau would lose digits.
     tau = max(tau0, 1e-9)
     # The time is computed at gamma = 1, where it is below 10. Until then only the fronts at a
-    # distance below 10 influence x = 0. The curve of the fronts extends at least to 12.
-    reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
-    edges_of_panels = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
+    # distance below 10 influence x = 0. Their curve extends to 12, in panels of length 1.
+    edges_of_panels = np.linspace(-12.0, 12.0, 25)
     curve = Curve(straight_panels(edges_of_panels, slowness, tau))
     (stick,) = Part(curve, gamma=1.0, until=10.0).find_stick_times(np.zeros(1))
     return float(stick / np.sqrt(float(gamma)))

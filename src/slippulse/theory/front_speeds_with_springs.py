@@ -186,7 +186,7 @@ def _slowest_log_excess(front_law: FrontLaw) -> float:
     short_wave_speed = np.sqrt(4.0 + front_law.gamma_dx2) / np.pi
     slowest_speed = max(1.0, short_wave_speed)
     if front_law.alpha_dx < 0.0:
-        # Slip runs away behind a front that is slower than this speed.
+        # Slip runs away behind a front of this inverse speed, or a slower front.
         runaway_slowness = np.sqrt(1.0 - 0.25 * front_law.alpha_dx**2 / front_law.gamma_dx2)
         slowest_speed = max(slowest_speed, SPEED_MARGIN / runaway_slowness)
     return float(np.log(slowest_speed - 1.0)) if slowest_speed > 1.0 else MIN_LOG_EXCESS
@@ -202,7 +202,7 @@ def _search_least_prestress(front_law: FrontLaw, slowest: float) -> tuple[float,
     slowest_speed = 1.0 + np.exp(slowest)
     # The first grid extends far beyond the speeds that damping and leaf springs influence.
     scale_of_speeds = slowest_speed * (1.0 + damping_ratio) * (1.0 + front_law.gamma_dx2)
-    largest_increase = np.exp(np.log(scale_of_speeds) + 5.0)
+    largest_increase = np.exp(5.0) * scale_of_speeds
     speed_increase = np.geomspace(1e-6, largest_increase, SCAN_SPEEDS - 1)
     log_excess = np.append(slowest, np.log(slowest_speed - 1.0 + speed_increase))
     for _ in range(NARROW_SCANS + 1):

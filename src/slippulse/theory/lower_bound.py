@@ -92,6 +92,7 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.in
         # Only pairs between which something may still have stuck are cut into parts.
         is_cut = x[1] - x[0] > min_length * part.scale
         is_cut &= ~stays_positive(part, x=x, velocity=velocity, time=time)
+        # Next to the first stick, the knots of the trailing edge show that nothing else has stuck.
         is_cut &= np.abs(x - first_x).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
         # The ends of the parts and du/dt there, [end, pair]. The first and the last end are the two
         # positions of the pair.

@@ -387,6 +387,7 @@ class DependenceDomains:
         function at nodes of the curve. If component_shape is (2,), it returns those of two
         functions, and the result has one row of integrals for each of them.
         """
+        # On a long curve the case of a constant kernel (1) has a faster way.
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
         integrals = np.empty((*component_shape, self.xi.size))
@@ -407,7 +408,8 @@ class DependenceDomains:
         """Return the integrals of `_integrate` for some of the points, given by their numbers.
 
         The integrand is evaluated at the nodes of all panels that one of the points needs. Then the
-        integral of each point is added up over its own panels.
+        integral of each point is added up over its own panels. component_shape is () for one
+        integrand, and (2,) for two.
         """
         curve = self.curve
         last_panel = self.right.panel[points]

@@ -111,6 +111,7 @@ class Rupture(ExplainsRemovedNames):
             refinement=refinement,
             alpha=rate_strengthening,
         )
+        # With a larger alpha, exponentials such as exp(alpha t) could overflow before the duration.
         check_number("rate_strengthening", rate_strengthening, at_most=MAX_DECAY / duration)
         self.prestress = prestress
         self.gamma = self.law.gamma

@@ -370,7 +370,11 @@ class SlowFront:
     alpha: float = 0.0
 
     def __post_init__(self) -> None:
-        """Set the stiffness k of the kernel, the end of the curve, and the size of the rupture."""
+        """Set the stiffness k of the kernel, the end of the curve, and the size of the rupture.
+
+        Tolerances are fractions of this size. It is at least |x0|, because rounding errors of
+        positions are proportional to |x0|.
+        """
         self.stiffness = self.gamma - 0.25 * self.alpha**2
         edges = self.curve.edges
         self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
@@ -452,6 +456,8 @@ class SlowFront:
         """
         reaches_mark = event.name == "mark"
         x_end = mark if reaches_mark else float(NODES_TO_ENDS[1] @ x)
+        # A front that stops at the end of the chunk may go on later, so this is no end reason.
+        end_reason = "mark" if reaches_mark else None
         panel = self.panel_of_chunk(chunk, x, x_end)
         next_length = PANEL_LENGTH
         # A chunk that stops before the left end of its panel of entries (s = -1), but not at an
@@ -459,7 +465,6 @@ class SlowFront:
         if event.name == "none" and chunk.stop != -1.0:
             next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
         last_entry_x = self.position(Entry(chunk.panel, chunk.stop))
-        end_reason = "mark" if reaches_mark else None
         return Advance(panel, end_reason, Progress(next_length, last_entry_x))
 
     def tau(self, x: np.ndarray) -> np.ndarray:
