@@ -142,7 +142,8 @@ class FastFront:
         """Return the largest length of an unrefined panel on an interval of the linear background.
 
         The phase of the waves changes by at most MAX_PHASE along such a panel. It changes by
-        kernel_rate times the proper length along the front, the integral of sqrt(dx^2 - dT^2).
+        kernel_rate (sqrt(gamma), or more if drag is strong) times the proper length along the
+        front, the integral of sqrt(dx^2 - dT^2).
         """
         if self.kernel_rate == 0.0:
             return MAX_LENGTH_WITHOUT_SPRINGS
@@ -188,7 +189,10 @@ class FastFront:
         return panels, Point(x, time)
 
     def panels_between(self, background: Interval, start: Point, end: float) -> list[Panel]:
-        """Return the panels of a front that runs right from a point to an end, within one piece."""
+        """Return the panels of a front that runs right from a point to an end, within one piece.
+
+        background is the linear part of the pre-stress in this piece, to which Gaussians are added.
+        """
         edges = self._first_edges(background, start.x, end)
         # Panels on which 1/v or tau is not resolved are halved, until all are resolved.
         while True:

@@ -169,7 +169,7 @@ class Knots(NamedTuple):
         cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
         slope_error = np.abs(middle.slope - cubic_slope)
         # The closer the edge comes to the wave speed (slope 1), the smaller an error of the slope
-        # must be.
+        # must be, so that the cubic remains faster than the waves.
         steepest = np.abs([self.slope[k], middle.slope, self.slope[k + 1]]).max(axis=0)
         largest_slope_error = np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
         is_cubic_right = time_error <= 2.0 * STICK_TIME_TOLERANCE * half_length

@@ -285,7 +285,7 @@ class DependenceDomains:
             factor_of_slope -= nodes.xi_minus_g * (k * p * dh_ds)
             return kernel * factor_of_kernel + kernel_slope * factor_of_slope
 
-        return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(braces)
+        return self._minus_mean_of_ends(static_solution, order=0) + 0.5 * self._integrate(braces)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
         """Return the strain du/dx at the points (y, t).
@@ -308,7 +308,7 @@ class DependenceDomains:
         does not depend on y.
         """
         k, alpha = self.stiffness, self.alpha
-        strain = self._minus_mean_of_ends(static_solution, 1)
+        strain = self._minus_mean_of_ends(static_solution, order=1)
         if k == alpha == 0.0:
             return strain
 
@@ -335,7 +335,7 @@ class DependenceDomains:
             return z_slope * (by_kernel + by_kernel_slope) + by_bracket
 
         # The terms with alpha - k (t - T). At both ends K = 1 and K' = -1/4, because z = 0.
-        p_left, p_right = self._decayed_at_ends(static_solution, 0)
+        p_left, p_right = self._decayed_at_ends(static_solution, order=0)
         elapsed_left, elapsed_right = self._elapsed_at_ends()
         terms_with_k = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
         strain += terms_with_k - 0.25 * alpha * (p_right - p_left)
@@ -578,6 +578,7 @@ def _bessel(z: np.ndarray, order: int) -> np.ndarray:
 
     For negative z, f(z) = I0(sqrt(-z)).
     """
+    # The smallest value avoids 0/0 at z = 0.
     root = np.maximum(np.sqrt(np.abs(z)), 1e-9)
     # I0 and I1 would overflow at the square root of a large positive z, where they are not needed.
     root_of_negative = np.where(z < 0.0, root, 0.0)

@@ -233,7 +233,8 @@ def _runs_back(x: np.ndarray) -> bool:
 def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
     """Return the roots of a polynomial between the start of a chunk, s = -1, and the largest s.
 
-    values are those of the polynomial at the nodes. A root at the very start is left out.
+    values are those of the polynomial at the nodes. A root at the very start is left out, because
+    it is the event at which the chunk before ended.
     """
     series = NODES_TO_SERIES @ values
     largest_coefficient = np.max(np.abs(series))
@@ -682,7 +683,8 @@ class SlowFront:
 
         Without leaf springs (gamma = 0) the integral of tau from the entry to the front is 0. So
         if the entry moves left by a distance, the front moves right by the same distance times
-        -(tau at the entry)/(tau at the front). This ratio is kept between 0.001 and 10.
+        -(tau at the entry)/(tau at the front). This ratio is kept between 0.001 and 10. If it is
+        not positive, or tau at the front is almost 0, it is replaced by 1.
         """
         first_entry = Entry(chunk.panel, chunk.start)
         # The source is tau dx/ds.

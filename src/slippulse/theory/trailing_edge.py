@@ -446,6 +446,7 @@ class PartWithEdge(Part):
             acceleration[missing] = np.where(has_secant, secant, acceleration[missing])
             step[missing] = velocity[missing] / acceleration[missing]
             time[missing] -= step[missing]
+            # A time that is far from the interpolated one may belong to another zero of du/dt.
             is_near = np.abs(time[missing] - guess[missing]) <= MAX_CORRECTION * length[missing]
             # The search also ends if the next step will be tiny. It is about the product of the
             # last two steps.
