@@ -168,7 +168,7 @@ def slowness_nearly_one(
 def log_prestress_in_chunks(
     excess_speed: np.ndarray, damping_ratio: np.ndarray, release: str
 ) -> np.ndarray:
-    """Return `log_prestress` of many fronts without leaf springs, chunk by chunk."""
+    """Return `log_prestress` of many fronts without leaf springs, in chunks to limit the memory."""
     values = []
     for start in range(0, excess_speed.size, FRONTS_PER_CHUNK):
         chunk = slice(start, start + FRONTS_PER_CHUNK)
