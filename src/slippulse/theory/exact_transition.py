@@ -11,6 +11,7 @@ from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
 from .part import Part
+from .prestress_pieces import split_into_pieces
 from .two_fronts import ExactTransition, fast_fronts
 
 
@@ -22,7 +23,8 @@ def exact_transition_displacement(
     Raises ValueError: outside the ranges below; if the rupture also nucleates away from x = 0; or
     if a front needs more than 20000 panels. This does not happen if gamma times the square of the
     Gaussian width is between 1e-17 and 1e6.
-    Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
+    Source: the first zero of du/dt at x = 0. With a Gaussian as the only change of the pre-stress,
+    x = 0 sticks first. With steps, bumps or points, another position may stick before;
     `Rupture.transition` examines all positions.
 
     Parameters
@@ -44,9 +46,10 @@ def exact_transition_displacement(
     check_domains(gamma=gamma)
     # The level far away, beyond all steps.
     level = float(prestress.level(np.asarray(1e300)))
-    if not prestress.symmetric or level <= 0.0:
-        allowed = "equal levels > 0 on both sides"
-        raise ValueError(f"prestress: not symmetric, or not positive far away; allowed: {allowed}")
+    is_nowhere_negative = all(piece.is_above for piece in split_into_pieces(prestress))
+    if not (prestress.symmetric and is_nowhere_negative and level > 0.0):
+        allowed = "equal values > 0 on both sides"
+        raise ValueError(f"prestress: not symmetric, or not positive; allowed: {allowed}")
     gamma = float(gamma)
     fronts_up_to = partial(
         fast_fronts, prestress, damping_ratio=damping_ratio, release=release, gamma=gamma
