@@ -303,6 +303,19 @@ def test_the_balance_is_the_nearest_one_if_bumps_or_steps_balance_the_pre_stress
     ) == pytest.approx(nearest)
 
 
+@pytest.mark.parametrize("far_level", [0.0, 0.3])
+def test_a_level_far_on_the_left_does_not_matter_if_a_nearer_part_balances(far_level):
+    """The step lies behind the balance, at about -6.3, where the rupture stops."""
+    balance = sp.theory.prestress_balance_position
+    nearest = balance(sp.Prestress(-0.5, 0.0))
+    assert balance(sp.Prestress(-0.5, 0.0, steps=((-20.0, far_level),))) == pytest.approx(nearest)
+    table = ((-20.0, far_level), (-20.0, -0.5), (0.0, -0.5), (0.0, 0.0))
+    assert balance(sp.Prestress(far_level, 0.0, points=table)) == pytest.approx(nearest)
+    # In front of the balance, the step prevents it.
+    with pytest.raises(ValueError, match="prestress.left: .*never balanced"):
+        balance(sp.Prestress(-0.5, 0.0, steps=((-3.0, far_level),)))
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_balance_of_random_bumps_is_that_of_a_running_sum(seed):
     rng = np.random.default_rng(seed)
