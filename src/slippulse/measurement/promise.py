@@ -43,13 +43,15 @@ MAX_REPORTED_MISSES = 5
 def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     """Return the names of the measured numbers that a promise covers; none for a flagged run.
 
+    The error of some numbers falls fast enough with the block spacing only if the pre-stress is
+    high enough, so that the front on one side, or on both sides, is fast.
+
     run : the row of a run in the measured table
     fraction : under a stress boundary, the transition is measured when the left front has covered
         this fraction of the balance distance |x_minus|
     """
     if run["run_flags"]:
         return set()
-    # Some numbers are covered only if the front is fast on one side, or on both sides.
     fast = fast_sides(run)
     required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
     names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}

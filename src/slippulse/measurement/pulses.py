@@ -189,7 +189,8 @@ def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
     is no such path.
     """
     fields = comoving(run, pulse)
-    # The path of the trailing edge begins at x = 0. Four blocks at its end are left out.
+    # The path of the trailing edge begins at x = 0. Four blocks at its end are left out, because
+    # the trailing edge is known only to within a few blocks, and they may still slide.
     path_length = pulse.front - pulse.width
     end = -pulse.width - 4.0 * run.attrs["dx"]
     is_in_last_third = (fields["xi"] < end) & (fields["xi"] > end - path_length / 3.0)

@@ -13,7 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import Prestress, prestress_from
+from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
@@ -103,7 +103,7 @@ def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
         right level if there is none
     profile, seed : labels of the profile, if the run has them
     steps_and_bumps : see `shortened_table`; this column and the next ones only for a table
-    lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`
+    lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`, also for ``window``
     """
     profile = prestress_from(run.attrs)
     steps_on_right = [step for step in profile.steps if step[0] > 0.0]
@@ -237,36 +237,28 @@ def sliding_at_once(run: AnyRun) -> float:
     return float(np.max(released_count - stuck_count))
 
 
-def _entry_of_far_field(profile: Prestress) -> tuple[float, float]:
-    """Return where the far field on the right begins, and a position one Gaussian width beyond.
-
-    The far field begins beyond the Gaussian, and beyond all steps and points of the pre-stress.
-    """
-    # If there is no Gaussian, its width is None. The unit of length takes its place.
-    width = profile.width or 1.0
-    distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
-    start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
-    return start, start + width
-
-
 def far_field(run: AnyRun) -> dict[str, float]:
     """Measure how the pulse on the right changes from an early time to the end of a run.
 
-    The early time is the sampled time at two thirds of the run. Only the far field is used, where
-    the pre-stress is constant.
+    The early time is the sampled time at two thirds of the run. Only the far field is used, which
+    lies beyond the Gaussian and beyond all steps and points, so that the pre-stress is constant.
 
     profile_change : largest change of slip velocity in the frame that moves at the wave speed,
         divided by the early peak velocity
     energy_change : relative change of the sum of kinetic and strain energy
-    strain_left : strain that is left where the pulse entered the far field: the largest strain
-        there at the end of the run, divided by the largest strain anywhere in the far field at that
-        time
+    strain_left : strain that is left where the pulse entered the far field, in its first Gaussian
+        width: the largest strain there at the end of the run, divided by the largest strain
+        anywhere in the far field at that time
 
     All are NaN if nothing slid in the far field at the early time. profile_change is NaN if the
     sampled far field is shorter than the distance that waves run between the two times.
     strain_left is NaN if no position near the entry is sampled, or if the final strain is 0.
     """
-    far_start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
+    profile = prestress_from(run.attrs)
+    # If there is no Gaussian, its width is None. The unit of length takes its place.
+    width = profile.width or 1.0
+    distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
+    far_start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
     times = np.asarray(run["sample_time"])
     # Sampled positions may be in any order, and may repeat.
     x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)
@@ -294,7 +286,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
     changes = np.abs(final_velocity - velocity[early][is_compared])
     largest_change = np.max(changes) if changes.size else np.nan
     final_strain = np.abs(strain[-1])
-    entry_strain, largest_strain = final_strain[far_x <= entry_end], np.max(final_strain)
+    entry_strain, largest_strain = final_strain[far_x <= far_start + width], np.max(final_strain)
     strain_left = np.nan
     if entry_strain.size and largest_strain > 0.0:
         strain_left = float(np.max(entry_strain) / largest_strain)

@@ -5,7 +5,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial, wraps
+from functools import wraps
 from html import escape
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
@@ -51,8 +51,7 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
         for name in values.keys() - signature.parameters:
             refuse_removed_argument("Scene", name)
         # All arguments by name, including those that were given by position.
-        bind_values = partial(signature.bind_partial, self, *given)
-        arguments = bind_values(**values).arguments
+        arguments = signature.bind_partial(self, *given, **values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
@@ -227,6 +226,7 @@ class Scene:
         check_that(is_resolved, "prestress.width", peak_width, allowed)
         # The lattice has all bumps and all points that reach 1 from the start, which needs memory.
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
+        # The exact solution (scheme "continuum") uses the points of a table without a lattice.
         if self.prestress.points and self.scheme != "continuum":
             check_resolved(self.prestress, self.dx)
             reach = self.prestress.nucleation_reach

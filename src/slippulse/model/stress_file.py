@@ -229,7 +229,10 @@ def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
 
 
 def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> StressTable:
-    """Read two one-dimensional variables of a netCDF file, given as bytes."""
+    """Read two one-dimensional variables of a netCDF file, given as bytes.
+
+    x, prestress : names of the two variables; if None, they are found by their usual names
+    """
     from io import BytesIO
 
     import xarray as xr

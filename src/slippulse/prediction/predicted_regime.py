@@ -24,7 +24,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
-    still_fraction is explained in `final_regime`.
+    still_fraction : a point is at rest below this fraction of the largest slip velocity
     """
     profile = run.prestress
     if profile.bumps or profile.points:
