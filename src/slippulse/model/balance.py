@@ -171,12 +171,7 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
     distance : distance from x = 0 beyond which the pre-stress equals its level on either side. On
         the right the level is 0, so that an integral to infinity ends there.
     """
-    nucleation = 0.0
-    if prestress.width is None:
-        # Without a Gaussian at x = 0, the rupture starts at the points that reach 1 or, if none
-        # does, at the largest value. This is the leftmost of these points.
-        x, tau = prestress.point_arrays
-        nucleation = float(x[tau >= min(1.0, float(tau.max()))][0])
+    nucleation = _leftmost_nucleation(prestress)
     integral_from_right_end = integral(prestress, nucleation, distance)
     if not integral_from_right_end >= 0.0:
         raise ArithmeticError("no balance position at x < 0 can be computed for this pre-stress")
@@ -198,6 +193,25 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
         # The left end of this part is the right end of the next one.
         integral_from_right_end = integral_from_left_end
     return root_to_last_bit(integral_from, left_end, part.right)
+
+
+def _leftmost_nucleation(prestress: Prestress) -> float:
+    """Return the leftmost position at which the rupture starts.
+
+    If there is a Gaussian at x = 0, the rupture starts there. Otherwise it starts at the points and
+    at the centres of bumps where the pre-stress reaches 1 or, if it reaches 1 nowhere, where it is
+    largest. If there are no points and no bumps, 0 is returned.
+    """
+    if prestress.width is not None or not (prestress.points or prestress.bumps):
+        return 0.0
+    positions = np.array([centre for centre, _, _ in prestress.bumps])
+    values = prestress(positions)
+    if prestress.points:
+        # At a jump the table has two values, so that the bumps are added to each of them.
+        x, tau = prestress.point_arrays
+        sum_of_bumps = prestress(x) - prestress.level(x)
+        positions, values = np.append(positions, x), np.append(values, tau + sum_of_bumps)
+    return float(positions[values >= min(1.0, values.max())].min())
 
 
 class _Part(NamedTuple):
