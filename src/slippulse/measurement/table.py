@@ -52,7 +52,12 @@ def run_columns(columns: Container[str]) -> list[str]:
 def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
     """Return all numbers of a run by name, and its leading pulse.
 
-    settings : the settings under ``measure`` in the configuration (see config/README.md)
+    settings : the settings under ``measure`` in the configuration
+
+        - front_window: fraction of a front's path, at its end, over which its speed is measured
+        - fraction: see `measure_transition`
+        - trailing_times: times at which the position of the trailing edge is measured
+        - still, steady_tolerance: see `classify_regime`
 
     A number is left out if the data that it needs were not recorded. The pulse is None if slip
     velocity was not recorded.
@@ -120,7 +125,8 @@ def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
 def shortened_table(profile_as_json: str) -> str:
     """Return a recorded profile (JSON text), with a digest in place of the points of a long table.
 
-    A table is long if it has more than MAX_POINTS_IN_ROW points.
+    A table is long if it has more than MAX_POINTS_IN_ROW points. Different tables have different
+    digests, so that their profiles can still be told apart.
     """
     parts = json.loads(profile_as_json)
     point_count = len(parts["points"])
@@ -159,7 +165,8 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
     stress boundary, the paper defines it for a negative level on the left and the level 0 on the
     right, without steps.
 
-    fraction : see `transition_stress`
+    fraction : under a stress boundary, the transition is the time at which the left front has
+        covered this fraction of its way to the balance position
     """
     left, right = run.attrs["left"], run.attrs["right"]
     profile = prestress_from(run.attrs)

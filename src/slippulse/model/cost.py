@@ -173,7 +173,8 @@ def _bound_speeds(scene: Scene, levels: np.ndarray) -> np.ndarray:
 
     The bounds are larger than the exact speeds at any damping and under both release rules.
     """
-    # If the pre-stress is not a table, the bound at the highest level is used for all levels.
+    # A table can have a few high values, so that each level has its own bound. Other profiles have
+    # few levels, and the bound at the highest one is used for all.
     level = np.clip(levels if scene.prestress.points else np.max(levels), 0.0, MAX_LEVEL)
     # Without damping, the front speed is 1/sqrt(1 - tau^2).
     speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))
@@ -199,6 +200,7 @@ def bound_cost(scene: Scene, samples: Samples | None = None) -> Bound:
     if samples is not None:
         sample_bytes = BYTES_PER_SAMPLE * samples.times.size * samples.positions.size
     table_bytes = BYTES_PER_TABLE_POINT * len(scene.prestress.points)
+    # Numbers that the solver keeps for each block.
     solver_numbers = scene.order + OTHER_SOLVER_NUMBERS
     return Bound(
         runs=1,

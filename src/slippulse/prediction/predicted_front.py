@@ -24,7 +24,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
     The columns are paper_front_speed_SIDE, exact_front_speed_SIDE (without leaf springs) and
     lattice_front_speed_SIDE (with the leaf springs of a lattice of spacing dx), where SIDE is left
-    or right.
+    or right. The settings, which other predictions need, are not used.
     """
     # Without damping the exact speed is that of the paper's formula.
     undamped = [run._replace(beta=0.0) for run in runs]

@@ -128,11 +128,13 @@ def _half_width(crack: ArrestingCrack) -> float:
         """Return the slip velocity of the wave that started at x, minus half the peak velocity."""
         return 0.5 * integral(crack.prestress, x, crack.end) - 0.5 * crack.peak_velocity
 
-    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0.
+    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0. To the
+    # right of crack.end it is 0 everywhere.
     start_of_peak = crack.slow_start
     ahead = root_between(excess_over_half_peak, start_of_peak, crack.end, xtol=1e-12)
     rear = root_between(excess_over_half_peak, crack.balance_position, start_of_peak, xtol=1e-12)
-    # x - t does not change along a wave. The width is the difference of the two values.
+    # x - t does not change along a wave, which starts when a front arrives at x. The width is the
+    # difference of the two values.
     ahead_minus_time = ahead - float(crack.fronts.arrival(ahead))
     rear_minus_time = rear - crack.time_at(rear)
     return float(ahead_minus_time - rear_minus_time)
