@@ -85,6 +85,8 @@ def _trailing_edge(run: AnyRun, peak_distance: float, speed: float) -> float:
 
     The four blocks behind the peak that stuck last are extrapolated to the end at the front speed.
     NaN if there are fewer of them.
+
+    peak_distance, speed : distance of the peak slip velocity from x = 0, and front speed
     """
     stick_times, distances = front_path(run, edge="stick_time")
     is_behind_peak = distances < peak_distance

@@ -80,6 +80,8 @@ class Bound(NamedTuple):
         This bound is that of one job, and ``chunks`` equal jobs make the sweep. Each job has the
         limits JOB_LIMITS. If there are many jobs, their limits are lower, so that all jobs together
         stay within SWEEP_LIMIT_IN_JOBS times the limits of one.
+
+        remedy : advice to the user, with which the description ends
         """
         fraction_of_limits = min(1.0, SWEEP_LIMIT_IN_JOBS / chunks)
         where = f" in each of {chunks} chunks" if chunks > 1 else ""
@@ -163,7 +165,7 @@ def _bound_scene_reach(scene: Scene) -> float:
     )
     # The width is None if there is no Gaussian at x = 0.
     end_of_peak = GAUSSIAN_END_IN_WIDTHS * (profile.width or 0.0)
-    # The sum is at least as large as each of these distances.
+    # The bound may be too large: the sum is at least as large as each of these distances.
     start = max(end_of_bumps, profile.nucleation_reach) + end_of_peak
     return bound_front_reach(profile, start, scene.duration, partial(_bound_speeds, scene))
 

@@ -424,7 +424,10 @@ REQUIRED_RESULTS = ("end_time", "releases", "re_releases", "half_lattice_used", 
 
 
 def check_run_attributes(attributes: Mapping) -> None:
-    """Raise ValueError if attributes of a run are missing or not allowed."""
+    """Raise ValueError if attributes of a run are missing or not allowed.
+
+    They are the parameters of the scene, and the results that measurements and figures need.
+    """
     Scene.from_attributes(attributes)
     for name in REQUIRED_RESULTS:
         value = attributes.get(name)

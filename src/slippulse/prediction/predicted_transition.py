@@ -34,7 +34,11 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
-    """Return the row of `predictions` for one run."""
+    """Return the row of `predictions` for one run.
+
+    fraction : under a stress boundary, the transition is the time at which the left front has
+        covered this fraction of its way to the balance position
+    """
     if run.boundary == "displacement":
         return _row_under_displacement(run)
     return _row_under_stress(run, fraction)
@@ -66,6 +70,8 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     pre-stress that is negative far to the left and 0 far to the right. Except for the balance
     distance, they also need a single Gaussian between these levels. Without it, time and length of
     the transition are NaN. Other numbers that cannot be computed are left out.
+
+    fraction : the transition is when the left front has covered this fraction of its way
     """
     row = {**NO_TRANSITION}
     profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
@@ -103,6 +109,8 @@ def _arrest(left: float, damping_ratio: float, release: str, fraction: float) ->
 
     The pre-stress is a Gaussian of width 1 between the level left and 0. The numbers are named as
     the columns of `predictions`.
+
+    fraction : the transition is when the left front has covered this fraction of its way
     """
     crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
     # Very close to the balance position, the left front is moved by waves that started where the
