@@ -133,8 +133,9 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     window : length of this part, as a fraction of the largest distance that the front reached
 
     If the front pauses within this part and is faster than the waves after the pause, only the path
-    after the pause is fitted. The line is NaN if there are fewer than MIN_FITTED_BLOCKS blocks, or
-    if the front is not known until the end, which may be so in an exact solution.
+    after the pause is fitted, because a line through the pause would be too slow. The line is NaN
+    if there are fewer than MIN_FITTED_BLOCKS blocks, or if the front is not known until the end,
+    which may be so in an exact solution.
     """
     times, distances = front_path(run, side)
     is_in_window = distances >= (1.0 - window) * np.max(distances, initial=0.0)

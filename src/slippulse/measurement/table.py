@@ -55,9 +55,11 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     settings : the settings under ``measure`` in the configuration
 
         - front_window: fraction of a front's path, at its end, over which its speed is measured
-        - fraction: see `measure_transition`
+        - fraction: under a stress boundary, the transition is measured when the left front has
+          covered this fraction of its way to the balance position
         - trailing_times: times at which the position of the trailing edge is measured
-        - still, steady_tolerance: see `classify_regime`
+        - still: a block counts as at rest below this fraction of the largest slip velocity
+        - steady_tolerance: largest relative change of a steady pulse
 
     A number is left out if the data that it needs were not recorded. The pulse is None if slip
     velocity was not recorded.
@@ -107,8 +109,12 @@ def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
     beyond : level into which the right front runs: that of the outermost step on the right, or the
         right level if there is none
     profile, seed : labels of the profile, if the run has them
-    steps_and_bumps : see `shortened_table`; this column and the next ones only for a table
-    lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`, also for ``window``
+    steps_and_bumps : the steps, bumps and points as JSON, without the points of a long table; this
+        column and the next ones only if the pre-stress is a table of points
+    lowest_prestress_SIDE, level_ahead_SIDE : lowest pre-stress that the front has crossed, and the
+        constant one that it crossed last
+
+    window : the last part of a front's path, as a fraction of the path
     """
     profile = prestress_from(run.attrs)
     steps_on_right = [step for step in profile.steps if step[0] > 0.0]
@@ -248,7 +254,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
     """Measure how the pulse on the right changes from an early time to the end of a run.
 
     The early time is the sampled time at two thirds of the run. Only the far field is used, which
-    lies beyond the Gaussian and beyond all steps and points, so that the pre-stress is constant.
+    lies to the right of all Gaussians, steps and points, so that the pre-stress is constant.
 
     profile_change : largest change of slip velocity in the frame that moves at the wave speed,
         divided by the early peak velocity
@@ -264,8 +270,9 @@ def far_field(run: AnyRun) -> dict[str, float]:
     profile = prestress_from(run.attrs)
     # If there is no Gaussian, its width is None. The unit of length takes its place.
     width = profile.width or 1.0
-    distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
-    far_start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
+    ends = [centre + GAUSSIAN_END_IN_WIDTHS * bump for centre, _, bump in profile.bumps]
+    ends += [position for position, _ in (*profile.steps, *profile.points)]
+    far_start = max([GAUSSIAN_END_IN_WIDTHS * width, *ends])
     times = np.asarray(run["sample_time"])
     # Sampled positions may be in any order, and may repeat.
     x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)

@@ -47,7 +47,7 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
     """Return the measured numbers of a run by name, and numbers that compare the run with theory.
 
-    settings : the section ``measure`` of the configuration, see `measure_run`
+    settings : the settings of `measure_run`, which the configuration has under ``measure``
     """
     row, pulse = measure_run(run, settings)
     if pulse is not None:
@@ -124,6 +124,7 @@ def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> 
     layer_thickness = beta * pulse.speed / (pulse.speed**2 - 1.0)
     if layer_thickness > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
         return "thick_front"
+    # The measured width may also differ by the width of the front, which is not sharp.
     front_width = layer_thickness + FRONT_WIDTH_IN_BLOCKS * dx
     largest_difference = MAX_RELATIVE_CHANGE * steady.width + front_width
     has_other_width = abs(pulse.width - steady.width) > largest_difference
