@@ -5,7 +5,7 @@ import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from html import escape
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
@@ -51,7 +51,8 @@ def takes_damping_ratio(scene: type["Scene"]) -> type["Scene"]:
         for name in values.keys() - signature.parameters:
             refuse_removed_argument("Scene", name)
         # All arguments by name, including those that were given by position.
-        arguments = signature.bind_partial(self, *given, **values).arguments
+        bind_values = partial(signature.bind_partial, self, *given)
+        arguments = bind_values(**values).arguments
         if damping_ratio is not None:
             allowed = f"damping_ratio or beta (here {short_repr(arguments.get('beta'))}), not both"
             check_that("beta" not in arguments, "damping_ratio", damping_ratio, allowed)
