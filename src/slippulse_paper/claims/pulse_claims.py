@@ -230,7 +230,7 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
         deviations_by_lattice.append((final_slips / steady_slips - 1.0).abs())
     finest, middle, _ = deviations_by_lattice
     tolerance = evidence.tolerance(id)
-    largest = finest.max().fillna(0.0)
+    largest = finest.max()
     return Qualitative(
         decided=agreed_answers(
             finest["pulse_slip"] <= tolerance, middle["pulse_slip"] <= tolerance
@@ -261,19 +261,21 @@ def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) ->
 def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     """Judge whether a pulse leaves no strain if it keeps its shape, and only then.
 
-    Pulses in zero pre-stress keep their shape, so the strain that they leave must be 0. The
-    additional requirement is that pulses that leave strain grow or decay.
+    Pulses in zero pre-stress keep their shape, so the strain that they leave behind must be 0. The
+    additional requirement is about pulses that enter another pre-stress: all that leave a strain
+    behind that is larger than the tolerance must grow or decay.
     """
-    # In this simulation pulses enter the pre-stress level in the column beyond.
+    # In this simulation pulses enter the pre-stress level in the column beyond. The column changed
+    # is 1 or -1 if they grow or decay there, and otherwise 0.
     enters_stress = "beyond != 0"
     strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
-    has_changed = evidence.holds_in_runs(
-        "regimes_beyond", where=enters_stress, holds="changed != 0"
+    has_changed = np.array(
+        evidence.holds_in_runs("regimes_beyond", where=enters_stress, holds="changed != 0"), object
     )
 
     def changed_if_strained(tolerance: float) -> Qualitative:
         """Judge whether all pulses that leave a strain above the tolerance grow or decay."""
-        return Qualitative(decided=np.array(has_changed, object)[strains > tolerance])
+        return Qualitative(decided=has_changed[strains > tolerance])
 
     in_zero_prestress = evidence.finest("stress_pulses", where=WITHOUT_DAMPING)
     claim = evidence.equation(id, in_zero_prestress, quantity="strain_left", predicted="0")

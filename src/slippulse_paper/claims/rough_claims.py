@@ -203,13 +203,14 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
     """Return how near final slip and front speed are to those of steady pulses.
 
     short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
-        among those with recorded slip
+        among those whose slip was recorded (the others have no memory)
     ..._correlation_length, ..._deviation : of the rough pre-stress
     ..._local, ..._mean : median relative deviation of the slip from that of a steady pulse at the
         local pre-stress, and at the mean pre-stress
     ..._slowness : largest relative deviation of the slowness (time per distance) of a front from
         the mean slowness of steady fronts at the local pre-stress
-    memory : distance after which a pulse has forgotten a change of the pre-stress
+    memory : distance after which a pulse has forgotten a change of the pre-stress, at the level of
+        the first of these ensembles
     forgotten : largest relative change of the slip by a bump that is farther away than the memory
     """
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
@@ -223,7 +224,8 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
             f"{name}_mean": ensemble["off_mean"],
             f"{name}_slowness": ensemble["slowness_off"],
         }
-    # The distance from the bump is in units of the memory. The column high has the largest change.
+    # In these rows the column distance has the distance from the bump, in units of the memory, and
+    # the column high has the largest change of the slip over all runs.
     beyond_memory = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
     return numbers | {"memory": shortest["memory"], "forgotten": beyond_memory["high"].max()}
 

@@ -104,9 +104,11 @@ def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return the lattice runs of figure 5, and the undamped ones of figures 10 and 11.
 
-    A sweep is left out if a changed configuration has no such runs in it.
+    So a claim is judged at the damping ratio of figure 5, and without damping. A sweep is left out
+    if a changed configuration has no such runs in it.
     """
-    # The sweeps of these figures, with conditions that select runs.
+    # The sweeps of these figures, with conditions that select runs. Runs with a pre-stress at which
+    # blocks would slide back are left out.
     conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
@@ -130,6 +132,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     open_choices = ["release", "damping_ratio"]
     choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
+        # The fraction of the path at which the left front counts as arrested is not a choice of
+        # figure 5. The numbers that claims show are for SHOWN_FRACTION.
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
@@ -139,7 +143,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         is_of_figure = choices_of_figure.items() <= choice.items()
         group = runs_of_figure if is_of_figure else other_runs
-        # In a changed configuration, no run may be left. Claims are then not testable.
+        # Runs with a pre-stress at which blocks would slide back are left out. In a changed
+        # configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
         group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
@@ -430,7 +435,10 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge if the arrest takes longer than at speed 1; a tolerance limits how much longer."""
+        """Judge if the arrest takes longer than at speed 1, and by how much if there is a limit.
+
+        The limit is the tolerance. The tolerance 0 means that there is none.
+        """
         return replace(
             takes_longer(tables),
             extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
