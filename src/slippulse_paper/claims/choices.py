@@ -102,10 +102,8 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
 
     It is the smallest change of this choice from a combination at which the claim holds to one at
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
-    single change with the largest effect.
+    single change with the largest effect. Effects on exact solutions rank above those on lattices.
     """
-    # Changes between exact solutions rank above those between lattices, and larger changes above
-    # smaller ones.
     rank = attrgetter("exact", "size")
     ranked = sorted(changes(combinations), key=rank)
     # The dictionary keeps the last change of each choice, which ranks highest.

@@ -114,8 +114,9 @@ def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """Return the best fit to the published figure, as numbers for the text.
 
-    ratio, low, high : damping ratio, and the ends of its confidence region at 95 %
-    degrees : degrees of freedom
+    release, ratio : release rule and damping ratio of the fit
+    low, high : ends of the confidence region of the damping ratio at 95 %
+    chi_square, degrees : chi-square and degrees of freedom
     difference : chi-square with the other release rule, minus chi-square of the best fit
     """
     fits = infer_parameters(evidence.tables["published_figure"])

@@ -76,7 +76,8 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     solution does (`Evidence.holds_in_runs`). The rule may also ask for additional numbers: counts
     of regimes, and values of expressions over the runs of the first sweep.
 
-    keys : fields of the rule, which are explained at `Always`
+    keys : fields of the rule (`Always`), such as the sweeps, the condition that must hold (holds),
+        and the regimes of exact solutions in which it holds (ends)
     """
     rule = Always(**keys)
     # The condition may contain {tolerance}, the tolerance of the claim, and {steady}, the largest
@@ -201,7 +202,7 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether there is only one pulse for each pre-stress, no matter how it began.
 
     Each pair of pulses in the same pre-stress must have the same velocity, width and slip, within
-    the tolerance.
+    the tolerance. The pulses began at nucleations of different width, or in another pre-stress.
     """
     table = evidence.finest("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)
     sizes = ["pulse_peak_velocity", "pulse_width", "pulse_slip"]

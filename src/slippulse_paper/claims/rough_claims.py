@@ -47,6 +47,10 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     The paper states no limit of the roughness. Ours is that the standard deviation of the
     pre-stress, divided by its level, is at most the tolerance. If pulses die in rougher ensembles,
     the claim needs this limit as a condition. Each pulse counts as one run.
+
+    largest_rate : upper bound of the death rate, if no pulse dies where the pre-stress is smooth
+    dying, stronger : number of pulses that die in rougher ensembles, and of all pulses in them
+    least_deviation : least standard deviation of these ensembles, divided by the level
     """
     rows = ensembles(evidence, "displacement")
     roughness = rows["deviation"] / rows["level"]
@@ -55,7 +59,6 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     alive, dead = (smooth["pulses"] - smooth["deaths"]).sum(), smooth["deaths"].sum()
     dead_in_rough, all_in_rough = rough["deaths"].sum(), rough["pulses"].sum()
     template_values = {
-        # Upper bound of the death rate, if no pulse dies where the pre-stress is smooth.
         "largest_rate": RULE_OF_THREE / smooth["distance"].sum(),
         "dying": dead_in_rough,
         "stronger": all_in_rough,

@@ -269,7 +269,11 @@ class JudgedEstimate(NamedTuple):
 
 
 def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) -> JudgedEstimate:
-    """Judge the paper's estimate of a quantity ("time" or "length") at each combination."""
+    """Judge the paper's estimate of a quantity ("time" or "length") at each combination.
+
+    Also return how much lattice runs deviate from exact theory, and the ratio of the arrow in
+    figure 4 to the estimate.
+    """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         """Compare the quantity with its estimate, in the runs of one combination."""
@@ -373,7 +377,8 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     """Judge if time T and length L of the transition are proportional to the paper's estimates.
 
     T and L of the runs are fitted as powers of their estimates, and the exponents should be 1. The
-    exponent that is farther from 1 decides.
+    exponent that is farther from 1 decides. Its uncertainty includes the largest change if all runs
+    with one value of one of the varied columns are left out.
     """
     if boundary == "displacement":
         runs, varied_columns = transitions(evidence), ["left", "gamma"]
@@ -482,6 +487,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
     finest = tables[0]
     runs = []
+    # Claims about open choices are judged at these damping ratios.
     for damping_ratio in sorted(evidence.tables["open_choices"]["damping_ratio"].unique()):
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
         if has_ratio.any():
@@ -502,6 +508,8 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
     There are two additional requirements. The median difference between the two distances (gap)
     must be small. And the distance must be proportional to |x_minus|: if it is fitted as a power of
     |x_minus|, the exponent must be near 1.
+
+    near : verdict on the gap
     """
     measured, predicted = "last_release_distance", "balance_distance"
     median_gaps = [(table[predicted] - table[measured]).abs().median() for table in tables]
@@ -574,7 +582,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 
     Both must fall from each value of gamma to the next larger one. At the three smallest values,
     both must be powers of gamma with an exponent that is negative by more than three standard
-    errors.
+    errors. The answer is None if there are fewer than three values of gamma.
 
     runs : runs that differ only in gamma, in ascending order
     """
