@@ -98,7 +98,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     decays = (velocities.last() < lowest_steady_velocities).unstack()
     with_strengthening = decays[decays.index > 0.0]
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
-    # The number of values of rate strengthening may depend on the spacing. The largest is shown.
+    # The number of steady pulses may differ between lattices. The largest number is shown.
     steady_count = float((~with_strengthening).sum().max())
     words = "number of values of rate strengthening for which a pulse stays steady"
     # The caveat is that only one friction law was tested.
@@ -118,8 +118,8 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     slowest, fastest : range of the front speeds under slip weakening, at the pre-stress ``level``
     undamped : front speed at this level by the paper's formula, at constant friction
     """
-    # The rows with this role are simulated pulses. The column over_critical has the rate
-    # strengthening divided by the critical one, as STRONGEST_RATES.
+    # The rows with this role are simulated pulses. The column over_critical and STRONGEST_RATES
+    # have the rate strengthening divided by the critical one.
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
     sizes = runs.set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
     at_constant_friction = sizes.xs(0.0, level="over_critical")

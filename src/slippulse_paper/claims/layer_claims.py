@@ -280,7 +280,7 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 
 
 def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
-    """Return how many pulses split, and the numbers of the two functions that this one calls last.
+    """Return how many pulses split, and the numbers of `ranges_of_splits` and `poorly_resolved`.
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
         followed at the largest gamma
