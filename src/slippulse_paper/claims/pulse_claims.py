@@ -129,7 +129,10 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
 
 
 def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
-    """Compare the front speed without damping, for gamma from 0.1 to 1, with the formula."""
+    """Compare the front speed without damping, for gamma from 0.1 to 1, with the formula.
+
+    The claim front_speed is about the limit of a small gamma.
+    """
     where = f"{WITHOUT_DAMPING} and 0.1 <= gamma <= 1"
     tables = evidence.lattices("speed_against_gamma", "steady_displacement", where=where)
     return evidence.approximate(id, tables, "front_speed_right", "paper_front_speed_right")
@@ -255,6 +258,7 @@ def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) ->
     """
     # A steady pulse is in uniform pre-stress, whose level is in the column left.
     keys = ["left", "gamma", "damping_ratio"]
+    # Several simulations may have the same steady pulse.
     by_level = steady_pulses.drop_duplicates(keys).set_index(keys)
     # The column beyond has the level that a pulse enters.
     entered = pulses[["beyond", "gamma", "damping_ratio"]]
@@ -302,6 +306,7 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     sizes = ["pulse_peak_velocity", HALF_WIDTH]
     decided: list[bool | None] = []
     for differences, uncertainties in differences_of_pairs(table, sizes):
+        # Pulses count as the same only if their differences are surely within the tolerance.
         is_same_pulse = all_within(differences, uncertainties, allowed, add_uncertainties=True)
         decided.append(None if is_same_pulse is None else not is_same_pulse)
     return Qualitative(decided=decided)
