@@ -30,6 +30,7 @@ from slippulse_paper.claims.pulse_claims import (
     UNPERTURBED,
     growth_signs,
     perturbed_pulses_settle,
+    thin_layer,
 )
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import (
@@ -362,6 +363,14 @@ def test_a_pulse_without_a_steady_one_to_compare_with_is_undecided():
     judged = perturbed_pulses_settle(evidence, "perturbed_pulses_settle")
     assert judged.decided == [True, False, None]
     assert judged.further["largest deviation of the slip"] == pytest.approx(0.1)
+
+
+def test_a_layer_is_neither_thin_nor_thick_in_a_run_without_a_pulse():
+    runs = pd.DataFrame({"pulse_width": [10.0, 9.0, NAN], "front_speed_right": 1.1})
+    runs = runs.assign(gamma=0.65, damping_ratio=0.1)
+    evidence = SimpleNamespace(tolerance=lambda id: 0.1, finest=lambda simulation: runs)
+    judged = thin_layer(evidence, "thin_layer")
+    assert list(judged.decided) == [True, False, None]
 
 
 def test_a_fitted_exponent_has_no_sentence_without_runs(project):

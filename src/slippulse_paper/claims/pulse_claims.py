@@ -147,7 +147,8 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     table = evidence.finest("any_prestress")
     allowed = evidence.tolerance(id)
     width = table["pulse_width"]
-    is_thin = 1.0 / width <= allowed
+    # A run without a pulse is undecided (None). It has no width.
+    is_thin = (1.0 / width <= allowed).astype(object).where(width.notna(), None)
     further = {
         "narrowest pulse, in H": width.min(),
         "widest pulse, in H": width.max(),
