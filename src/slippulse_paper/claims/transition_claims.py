@@ -104,9 +104,11 @@ def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return the lattice runs of figure 5, and the undamped ones of figures 10 and 11.
 
-    A sweep is left out if a changed configuration has no such runs in it.
+    So a claim is judged at the damping ratio of figure 5, and without damping. A sweep is left out
+    if a changed configuration has no such runs in it.
     """
-    # The sweeps of these figures, with conditions that select runs.
+    # The sweeps of these figures, with conditions that select runs. Runs with a pre-stress at which
+    # blocks would slide back are left out.
     conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
@@ -130,6 +132,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     open_choices = ["release", "damping_ratio"]
     choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
     if boundary == "stress":
+        # The fraction of the path at which the left front counts as arrested is not a choice of
+        # figure 5. The numbers that claims show are for SHOWN_FRACTION.
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
@@ -139,7 +143,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         is_of_figure = choices_of_figure.items() <= choice.items()
         group = runs_of_figure if is_of_figure else other_runs
-        # In a changed configuration, no run may be left. Claims are then not testable.
+        # Runs with a pre-stress at which blocks would slide back are left out. In a changed
+        # configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
         group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
@@ -264,7 +269,11 @@ class JudgedEstimate(NamedTuple):
 
 
 def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) -> JudgedEstimate:
-    """Judge the paper's estimate of a quantity ("time" or "length") at each combination."""
+    """Judge the paper's estimate of a quantity ("time" or "length") at each combination.
+
+    Also return how much lattice runs deviate from exact theory, and the ratio of the arrow in
+    figure 4 to the estimate.
+    """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         """Compare the quantity with its estimate, in the runs of one combination."""
@@ -368,7 +377,8 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     """Judge if time T and length L of the transition are proportional to the paper's estimates.
 
     T and L of the runs are fitted as powers of their estimates, and the exponents should be 1. The
-    exponent that is farther from 1 decides.
+    exponent that is farther from 1 decides. Its uncertainty includes the largest change if all runs
+    with one value of one of the varied columns are left out.
     """
     if boundary == "displacement":
         runs, varied_columns = transitions(evidence), ["left", "gamma"]
@@ -403,7 +413,8 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     """Judge whether the mean speeds of both fronts until the arrest are 1, the wave speed.
 
-    The front whose median deviation is larger decides.
+    The front whose median deviation is larger decides. Its median speed is shown for each fraction
+    of the path at which the left front may count as arrested, and for the last release.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
@@ -430,24 +441,21 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge if the arrest takes longer than at speed 1; a tolerance limits how much longer."""
+        """Judge if the arrest takes longer than at speed 1, and by how much if there is a limit.
+
+        The limit is the tolerance. The tolerance 0 means that there is none.
+        """
         return replace(
             takes_longer(tables),
             extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
         )
 
     runs = arrests(evidence)
-    smallest_ratios = []
-    for choice, tables in runs:
-        if choice["solution"] == "exact":
-            ratio = tables[0]["time"] / tables[0]["covered"]
-            smallest_ratios.append(float(ratio.min()))
-    further = {
-        "smallest exact transition time divided by the time of a front at the wave speed": min(
-            smallest_ratios
-        )
-    }
-    return over_choices(judge_each(runs, judge), further=further)
+    exact = pd.concat([tables[0] for choice, tables in runs if choice["solution"] == "exact"])
+    # At the wave speed 1 the time is equal to the covered distance.
+    ratio = exact["time"] / exact["covered"]
+    words = "smallest exact transition time divided by the time of a front at the wave speed"
+    return over_choices(judge_each(runs, judge), further={words: float(ratio.min())})
 
 
 def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitative:
@@ -474,6 +482,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
     finest = tables[0]
     runs = []
+    # Claims about open choices are judged at these damping ratios.
     for damping_ratio in sorted(evidence.tables["open_choices"]["damping_ratio"].unique()):
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
         if has_ratio.any():
@@ -494,6 +503,8 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
     There are two additional requirements. The median difference between the two distances (gap)
     must be small. And the distance must be proportional to |x_minus|: if it is fitted as a power of
     |x_minus|, the exponent must be near 1.
+
+    near : verdict on the gap
     """
     measured, predicted = "last_release_distance", "balance_distance"
     median_gaps = [(table[predicted] - table[measured]).abs().median() for table in tables]
@@ -566,7 +577,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 
     Both must fall from each value of gamma to the next larger one. At the three smallest values,
     both must be powers of gamma with an exponent that is negative by more than three standard
-    errors.
+    errors. The answer is None if there are fewer than three values of gamma.
 
     runs : runs that differ only in gamma, in ascending order
     """
