@@ -216,6 +216,8 @@ def pulse_errors(setting: Setting, damping_ratio: float, front_window: float) ->
 def crack_errors(setting: Setting) -> dict[str, float]:
     """Return the relative errors of the left front of a crack, and the cost of its run.
 
+    Exact values are for max(DAMPING_RATIOS), with which `Setting.run_crack` runs the crack.
+
     share_time : error of the time at which the front has covered COVERED_FRACTION of its path
     arrest_position : error of the distance that the front has run at the end
     """

@@ -318,12 +318,12 @@ def negative_levels() -> Iterator[Case]:
     """
     for level, dx, friction_ratio, damping_ratio, expected_verdict in (
         (-1.0, 0.005, 5.0, 0.1, RIGHT),
-        (-1.0, 0.01, 5.0, 0.0, FLAGGED),
-        (-10.0, 0.02, 5.0, 0.1, FLAGGED),
+        (-1.0, 0.01, 5.0, 0.0, FLAGGED),  # undamped
+        (-10.0, 0.02, 5.0, 0.1, FLAGGED),  # coarse
         (-10.0, 0.004, 5.0, 0.1, RIGHT),
-        (-30.0, 0.002, 5.0, 0.1, FLAGGED),
+        (-30.0, 0.002, 5.0, 0.1, FLAGGED),  # blocks would slide back
         (-30.0, 0.002, 60.0, 0.1, RIGHT),
-        (-100.0, 0.05, 60.0, 0.1, FLAGGED),
+        (-100.0, 0.05, 60.0, 0.1, FLAGGED),  # coarse
         (-100.0, 0.001, 60.0, 0.1, RIGHT),
     ):
         yield Case(

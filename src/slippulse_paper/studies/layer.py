@@ -102,9 +102,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     pulse : pulses at several fracture energies and levels
     far : the same pulses, farther away
-    damped : those that split, with the paper's damping
+    damped : those of the part far that split, with the paper's damping
     patch : short runs, until the region in which the rupture starts has stuck
-    step : pulses that enter another pre-stress
+    step : pulses that enter another pre-stress, and for comparison pulses that do not
     free : pulses in a layer whose top is free to rise
     held : the same pulses in a layer whose top is held
     coupled : pulses with a strength that depends on the normal stress
@@ -205,8 +205,9 @@ def is_long(scene: LayerScene) -> bool:
 def finer_grids(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the grids for a pulse that are finer than the coarsest grid.
 
-    There are two such grids, or three for very brittle pulses and for brittle pulses at GAMMA. At
-    small gamma, where pulses are wide and runs are long, there is one, or two if the pulse is
+    A pulse is brittle if its strength falls over a short length, which needs a fine grid. There are
+    three finer grids for very brittle pulses and for brittle pulses at GAMMA, and two for others.
+    At small gamma, where pulses are wide and runs are long, there is one, or two if the pulse is
     brittle and its run is not long.
 
     scene : a scene of the pulse with the duration and the trail that it needs
@@ -525,8 +526,11 @@ def numbers_of_whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[st
     first_stick : time at which the middle of the nucleation region sticks. Infinite if it never
         sticks. NaN if the scene has a finite trail, because then the middle is not solved until the
         end: only the part of the layer within this length behind the waves is.
-    earliest_stick, earliest_stick_position : time and distance from x = 0 of the first stick
-    end : position that the front has reached at the end of the run
+    earliest_stick, earliest_stick_position : time of the first stick anywhere, and its distance
+        from x = 0
+    largest_velocity : largest slip velocity at the end of the run
+    energy_residual : residual of the energy balance
+    end : position of the front on the given side (1 for the right, -1 for the left) at the end
     """
     first_stick = float(run.stick_time[np.argmin(np.abs(run.x))])
     if not math.isfinite(first_stick):

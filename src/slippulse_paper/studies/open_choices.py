@@ -62,6 +62,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ``open_choices`` lists the choices, with one row for each value of a choice.
     """
     with_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_displacement"]))
+    # The exact transition is known if the level, the same on both sides, is positive.
     with_springs = with_springs.query("left > 0")
     without_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_stress"]))
     # The left front arrests only in negative pre-stress.

@@ -136,9 +136,10 @@ def _critical_rate_strengthenings() -> pd.DataFrame:
 
 
 def _steady_pulses() -> pd.DataFrame:
-    """Return width and slip of exact steady pulses at SHOWN_LEVEL, by rate strengthening.
+    """Return width and slip of exact steady pulses at the pre-stress SHOWN_LEVEL.
 
-    The largest rate strengthening is just below the critical one, at which the width is infinite.
+    The rate strengthening alpha goes up to nearly the critical one, at which the width is infinite.
+    Friction with a negative alpha weakens with the slip rate.
     """
     speed, critical_alpha = _front_and_critical_alpha(SHOWN_LEVEL)
     rows = []

@@ -113,6 +113,7 @@ def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
         for scene in scenes_of(sweep, profiles, dx=[dx]):
             run = simulated_run(scene)
             fates += [fate_of_pulse(run, side, stop=end_of_track) for side in (1, -1)]
+        # Deaths are counted from START on, which is beyond the region that the nucleation reaches.
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
 
