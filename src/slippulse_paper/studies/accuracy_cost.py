@@ -148,6 +148,7 @@ def settings_of_schemes() -> list[Setting]:
             compared.append(Setting(scheme="fixed_step", order=1, step=step, dx=dx))
     for dx, order, step in product(SPACINGS, ORDERS, STEPS):
         compared.append(Setting(scheme="localised", order=order, step=step, dx=dx))
+    # The exact solution uses neither the order nor the step.
     compared.append(Setting(scheme="continuum", order=1, step=1.0, dx=EXACT_SPACING))
     return compared
 

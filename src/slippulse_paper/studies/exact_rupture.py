@@ -95,7 +95,8 @@ def _lattice_markers(run: xr.Dataset) -> pd.DataFrame:
 def _compared_positions(rupture: Rupture) -> np.ndarray:
     """Return the positions at which lattices are compared with the exact solution.
 
-    They cover a fraction of the path of the left front and of that of the right front.
+    They cover a fraction of the path of the left front and of that of the right front. The fraction
+    is smaller for a front that stops, because it stops abruptly.
     """
     left_end, right_end = outermost_fronts(rupture)
     left_fraction = RUNNING_FRONT_FRACTION

@@ -109,7 +109,8 @@ class Case:
         if self.quantity not in ("front speed", "final slip"):
             return 0.0
         if self.family == "gamma":
-            # The speed depends on gamma dx^2 here. It is NaN if no front is faster than the waves.
+            # These cases are undamped, and their speed depends on gamma dx^2. It is NaN if no front
+            # is faster than the waves.
             return value_or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
         pulse = steady_pulse(
             self.level,
@@ -205,9 +206,10 @@ def small_gammas() -> Iterator[Case]:
 
 
 def large_gammas() -> Iterator[Case]:
-    """Yield cases of front speeds at increasing gamma dx^2. Large values should be flagged.
+    """Yield cases of front speeds at increasing gamma dx^2.
 
-    In the last case, no front on the lattice is faster than the waves.
+    Large values should be flagged, because the pulse is then only a few blocks wide. In the last
+    two cases, no front on the lattice is faster than the waves.
     """
     dx = 0.01
     for gamma, expected_verdict in (
@@ -261,7 +263,10 @@ def strong_damping() -> Iterator[Case]:
 
 
 def extreme_spacings() -> Iterator[Case]:
-    """Yield cases with spacings from one layer thickness to a thousandth of it."""
+    """Yield cases with spacings from one layer thickness to a thousandth of it.
+
+    The largest spacing should be flagged, because the pulse is then only a few blocks wide.
+    """
     for dx, quantity, duration, expected_verdict in (
         (1.0, "front speed", 60.0, FLAGGED),
         (0.3, "front speed", 60.0, RIGHT),

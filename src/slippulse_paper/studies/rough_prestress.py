@@ -262,6 +262,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     numbers |= {"push": smooth_push, "diffusivity": variance_rate, "death_scale": death_scale}
     # Survival at the largest distance.
     numbers |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
+    # Only pulses that are alive have a velocity at the end.
     numbers |= velocity_numbers(pulses[~pulses["died"]], variance_rate)
     return pd.concat([pd.DataFrame([numbers]), pulses, curve]).assign(**parameters)
 
