@@ -132,7 +132,8 @@ def passes(case: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> 
     exact_depth = case["exact"]
     length = relative_length * exact_depth
     distance = penetration_on_lattice(case, pulse, PASSING_SPACING, barrier_length=length)
-    # A pulse that has passed goes on beyond the end of the barrier.
+    # A pulse that has passed goes on far beyond the end of the barrier, and one that has not passed
+    # ends in the barrier.
     return distance > length + 0.5 * exact_depth
 
 

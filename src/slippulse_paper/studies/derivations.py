@@ -89,6 +89,7 @@ def rows_by_position(compute_rupture: Callable[[], Rupture]) -> list[tuple[str, 
     """Return rows (quantity, x, value) of release time, stick time and final slip at POSITIONS.
 
     The values are NaN if ``compute_rupture`` raises an error, because there is no exact rupture.
+    It returns the same rupture at each call, and computes it only once.
     """
     rows = []
     for quantity in ("release_time", "stick_time", "final_slip"):

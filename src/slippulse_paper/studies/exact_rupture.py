@@ -129,6 +129,7 @@ def _velocity_map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     parts = []
     for source, half, velocity in (("exact", left_x, exact), ("lattice", right_x, on_lattice)):
         grid = xr.DataArray(velocity, [("time", times), ("position", half)], name="slip_velocity")
+        # Rounded numbers make the file of this large table smaller.
         rows = grid.to_series().reset_index().round({"slip_velocity": 5, "position": 9})
         is_sliding = rows["slip_velocity"] > 0.0
         parts.append(rows[is_sliding].assign(role=f"map_{source}"))

@@ -613,7 +613,8 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
 def field_rows(scene: LayerScene) -> pd.DataFrame:
     """Return the horizontal velocity in the layer at the end of a scene, at some grid nodes.
 
-    The part of the layer that no wave has reached is left out.
+    The part of the layer that no wave has reached is left out. The scene has the fracture energy
+    DRAWN_ENERGY.
     """
     run = simulate_layer(scene)
     # Waves run at most at speed 1, from the edge of the nucleation region at x = scene.nucleation.
