@@ -141,7 +141,8 @@ def _differences(
 ) -> pd.DataFrame:
     """Return the mean difference between a run and the exact solution, one row per quantity.
 
-    The difference is divided by the mean of the exact values.
+    The difference is divided by the mean of the exact values. The column places has the number of
+    compared values.
 
     x, exact_values : positions, and exact values there of all quantities except slip velocity.
         Slip velocity is compared at the samples of the run between the first and last position.

@@ -165,7 +165,8 @@ def levels_near_1() -> Iterator[Case]:
 def levels_near_0() -> Iterator[Case]:
     """Yield cases of narrow pulses. Those that the lattice does not resolve should be flagged.
 
-    A pulse is resolved if it is many blocks wide. Its width is proportional to the level.
+    A pulse is resolved if it is many blocks wide. Its width is proportional to the level. The
+    nucleation is narrow, too, but at least one block wide.
     """
     for level, dx, duration, width, expected_verdict in (
         (0.05, 0.8, 60.0, 0.8, FLAGGED),
