@@ -105,8 +105,8 @@ def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, A
 def exact_row(tau0: float, barrier: float, gamma: float, damping_ratio: float) -> dict[str, Any]:
     """Return the depth to which a pulse enters a barrier, as a row of the map.
 
-    Rows of the other parts begin with the same columns. The column exact has the depth by exact
-    theory. The column paper has an estimate that the authors of the paper use in later code.
+    Rows of the other parts are copies of such a row with more columns. The column exact has the
+    depth by exact theory. The column paper has an estimate that the authors use in later code.
 
     tau0 : pre-stress before the barrier, in which the pulse is steady
     barrier : negative pre-stress in the barrier

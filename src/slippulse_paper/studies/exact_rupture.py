@@ -108,7 +108,7 @@ def _compared_positions(rupture: Rupture) -> np.ndarray:
 
 
 def _exact_values(rupture: Rupture, x: np.ndarray) -> Values:
-    """Return the exact release time, stick time and final slip at some positions."""
+    """Return the exact release time, stick time and slip at the end, at some positions."""
     return {
         "release": rupture.release_time(x),
         "stick": rupture.stick_time(x),

@@ -338,6 +338,7 @@ def negative_levels() -> Iterator[Case]:
             quantity="T_trans",
             expected_verdict=expected_verdict,
             dx=dx,
+            # In units of the exact T_trans.
             duration=1.5,
             level=level,
             gamma=0.0,

@@ -197,6 +197,7 @@ def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
         duration=layer.duration / thickness,
         cells=round(cells * thickness),
         nucleation=pulse.patch_half_length / thickness,
+        # Velocities are the same in all units, because times and slips have the same factor.
         rate=RATE,
         trail=layer.trail / thickness,
         precision="single",

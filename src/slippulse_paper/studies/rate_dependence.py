@@ -116,11 +116,11 @@ def _front_and_critical_alpha(level: float) -> Front:
 
 
 def _lattice_rows(still_fraction: float) -> pd.DataFrame:
-    """Run lattices at all levels and fractions of the critical rate strengthening.
+    """Return a row for each lattice run, at all levels and fractions of the critical alpha.
 
     still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
-    # Below this value slip grows without bound, and the model refuses it.
+    # At a smaller rate strengthening slip grows without bound, and the model refuses it.
     smallest_alpha = -2.0 * np.sqrt(GAMMA)
     rows = []
     for level, fraction in product(LEVELS, CRITICAL_FRACTIONS):
