@@ -36,6 +36,7 @@ from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import (
     front_arrest_position,
     judge_rise_with_prestress,
+    lattice_runs,
     transition_diverges,
     transition_time_underestimated,
 )
@@ -332,6 +333,20 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     claim = transition_time_underestimated(StrongBarriers(), "underestimate")
     assert claim.verdict() == NONE
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
+
+
+def test_lattice_runs_of_several_release_rules_and_damping_ratios_are_not_mixed():
+    lists = {"left": [0.2, 0.4], "release": ["total", "elastic"], "damping_ratio": [0.1, 0.2]}
+    finest = pd.MultiIndex.from_product(lists.values(), names=lists).to_frame(index=False)
+    runs = lattice_runs([finest, finest.assign(factor=2.0)])
+    choices = [(choice["release"], choice["damping_ratio"]) for choice, _ in runs]
+    assert choices == [("total", 0.1), ("total", 0.2), ("elastic", 0.1), ("elastic", 0.2)]
+    for choice, tables in runs:
+        for table in tables:
+            assert [*table["left"]] == [0.2, 0.4]
+            assert (table["release"] == choice["release"]).all()
+            assert (table["damping_ratio"] == choice["damping_ratio"]).all()
+    assert lattice_runs([finest.iloc[:0]]) == []
 
 
 @pytest.mark.parametrize("judge", [front_arrest_position, transition_diverges])

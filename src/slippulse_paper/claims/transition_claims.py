@@ -91,14 +91,19 @@ class Runs(NamedTuple):
     tables: list[pd.DataFrame]
 
 
-def shared_choices(table: pd.DataFrame) -> Chosen:
-    """Return the release rule and the damping ratio, which all runs of a table share."""
-    return {name: table[name].iloc[0] for name in ("release", "damping_ratio")}
+def lattice_runs(tables: list[pd.DataFrame]) -> list[Runs]:
+    """Return simulated runs, divided by release rule and damping ratio; empty if there are none.
 
-
-def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
-    """Return simulated runs with their choices; ``tables`` has one table for each lattice."""
-    return Runs(shared_choices(tables[0]) | {"solution": "lattice"}, tables)
+    tables : one table for each lattice, the finest first, with the same runs in the same order
+    """
+    finest = tables[0]
+    choices = finest[["release", "damping_ratio"]].drop_duplicates()
+    runs = []
+    for release, damping_ratio in choices.itertuples(index=False):
+        has_choices = (finest["release"] == release) & (finest["damping_ratio"] == damping_ratio)
+        choice: Chosen = {"release": release, "damping_ratio": damping_ratio, "solution": "lattice"}
+        runs.append(Runs(choice, [table[has_choices.to_numpy()] for table in tables]))
+    return runs
 
 
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
@@ -115,10 +120,7 @@ def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     }
     simulated = []
     for sweep, condition in conditions.items():
-        lattices = evidence.lattices(sweep, where=condition)
-        finest = lattices[0]
-        if not finest.empty:
-            simulated.append(lattice_runs(lattices))
+        simulated += lattice_runs(evidence.lattices(sweep, where=condition))
     return simulated
 
 
@@ -128,9 +130,10 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     The combination with which we drew figure 5 comes first, because claims show the numbers of the
     first one.
     """
-    # The names of these choices, and their values in figure 5.
+    # The names of these choices, and their values in the first run of figure 5.
     open_choices = ["release", "damping_ratio"]
-    choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
+    first_run = evidence.tables[f"scaling_{boundary}"].iloc[0]
+    choices_of_figure: Chosen = {name: first_run[name] for name in open_choices}
     if boundary == "stress":
         # The fraction of the path at which the left front counts as arrested is not a choice of
         # figure 5. The numbers that claims show are for SHOWN_FRACTION.
@@ -475,8 +478,8 @@ def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitati
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     """Judge the distance of the last release on the left, which should be |x_minus|.
 
-    The claim is judged for each damping ratio separately. The numbers that are shown are those of
-    all runs together.
+    The claim is judged for each damping ratio and release rule separately. The numbers that are
+    shown are those of all runs together.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
@@ -485,8 +488,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     # Claims about open choices are judged at these damping ratios.
     for damping_ratio in sorted(evidence.tables["open_choices"]["damping_ratio"].unique()):
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
-        if has_ratio.any():
-            runs.append(lattice_runs([table[has_ratio] for table in tables]))
+        runs += lattice_runs([table[has_ratio] for table in tables])
     # In a changed configuration, no run may have these ratios. All runs are then judged together.
     runs = runs or [Runs({"solution": "lattice"}, tables)]
     judge = partial(judge_arrest_distance, evidence, id)
