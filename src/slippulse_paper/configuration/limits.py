@@ -123,8 +123,9 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
 def _pulse_blocks(scene: Scene) -> float:
     """Return the number of blocks across the pulse of a scene.
 
-    If the stress is held, return the number of blocks across the narrowest Gaussian instead. The
-    result is infinity if there are no blocks, or if theory does not give a pulse width.
+    If the stress is held, return the number of blocks across the narrowest Gaussian instead, because
+    pulses are then steady only at zero pre-stress. The result is infinity if there are no blocks,
+    or if theory does not give a pulse width.
     """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx

@@ -80,7 +80,8 @@ def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]
     if in_si:
         x, stress = read_in_si(path)
         return x.tolist(), stress.tolist()
-    table = read_dimensionless(path, None, None)
+    # The columns have their usual names.
+    table = read_dimensionless(path, x=None, prestress=None)
     return table.x, table.prestress
 
 
@@ -140,6 +141,7 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
     """Return the pre-stress of one expanded profile."""
     if not any(key in profile for key in TABLES):
         return Prestress(**profile)
+    # Tables take time and are cached. The cache needs a hashable argument.
     return _prestress_of_table(json.dumps(profile, sort_keys=True))
 
 

@@ -54,11 +54,13 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
     entry = _last_known_entry(path, config)
-    # If a value may have several forms, the path leads beyond the known entry, to one of the forms.
-    # Such a value is refused as a whole, without regard to its keys.
+    # Errors such as an unknown key are errors of a mapping, and the path leads to one of its keys.
+    # If the mapping is only one of several forms that a value may have, the known entry ends before
+    # it. The value is then refused as a whole, without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
     is_known_mapping = len(mapping_path) <= len(entry.path)
     if is_known_mapping:
+        # This is None for an error of a single value.
         line = _mapping_line(problem, config)
         if line is not None:
             return line
@@ -120,7 +122,8 @@ def _missing_line(path: Path, config: Mapping) -> str:
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2 and isinstance(path[-2], str):
-        # The name of this entry may be a misspelt name of a shipped entry, which has all keys.
+        # The path may be simulations.NAME.boundary, where NAME is a misspelt name of a shipped entry.
+        # The shipped entry has all keys.
         siblings = _last_known_entry(path[:-2], config).value
         line += spelling_hint(path[-2], {*siblings} - {path[-2]})
         if path[0] == "simulations" and path[-2].startswith("fig"):

@@ -201,7 +201,7 @@ class Rough(Block):
     def check(self) -> None:
         """Raise ValueError if one of the levels is not possible in a rough background.
 
-        Only the first value of each other list is checked.
+        Only the first value of each other list is checked, since all combinations may be many.
         """
         lists = rough_lists(self.plain())
         first_values = {name: values[0] for name, values in lists.items()}
@@ -403,6 +403,7 @@ def _with_extra_terms(lists: bool) -> type[Physics]:
     """
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
+        # `LIMITS` has pydantic's name of each limit. The bound "integer" is a type, not a limit.
         limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
         number: Any = int if "integer" in term.bounds else float
         value: Any = Annotated[number, Field(**limits)]

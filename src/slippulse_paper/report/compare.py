@@ -175,16 +175,14 @@ def _read_content(path: Path) -> dict:
 def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.DataFrame:
     """Compare one table of both folders, record what differs, and return the numbers of its runs.
 
-    Numbers of runs that are in both folders are judged. Those of altered runs (see `TableRuns`) are
-    only listed.
-
     result : the comparison in which the differences are recorded
     name : file name of the table
     """
     new_table = read_runs(new / "measurements" / name)
     old_table = read_runs(old / "measurements" / name)
+    # The columns that distinguish the runs. Messages describe a run by them.
     parameters = varying_parameters(new_table, old_table)
-    # Find the runs that are in both folders, and the other runs.
+    # Find the runs that are in both folders, pairs of altered runs, and the other runs.
     joined = join_runs(new_table, old_table)
     runs = TableRuns(
         table=Path(name).stem,
@@ -202,21 +200,21 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
         differences.append("uncertainties in one folder only")
     result.other_differences += [f"{name}: {difference}" for difference in differences]
 
-    # Compare numbers and texts.
+    # Compare the texts and numbers of runs that are in both folders.
     columns = compared_columns(new_table, old_table)
     new_runs = with_uncertainties(new_table, columns.numbers, new_study)
     old_runs = with_uncertainties(old_table, columns.numbers, old_study)
     new_same = new_runs.select(joined.same_runs["new"])
     old_same = old_runs.select(joined.same_runs["old"])
     compared = compare_numbers(new_same, old_same, parameters)
-    altered = list_altered_numbers(
-        new_runs.select(joined.altered_runs["new"]),
-        old_runs.select(joined.altered_runs["old"]),
-        parameters,
-    )
     disagreements = [*differing_texts(new_same, old_same, columns.texts)]
     disagreements += _differing_numbers(compared)
     result.disagreements += [f"{name}: {disagreement}" for disagreement in disagreements]
+
+    # The numbers of altered runs are listed, too, but they are not expected to agree.
+    new_altered = new_runs.select(joined.altered_runs["new"])
+    old_altered = old_runs.select(joined.altered_runs["old"])
+    altered = list_altered_numbers(new_altered, old_altered, parameters)
     numbers = pd.concat([compared, altered])
     return numbers.assign(table=runs.table)[["table", *numbers.columns]]
 

@@ -108,7 +108,7 @@ def pair_rows(new: pd.DataFrame, old: pd.DataFrame, columns: list[str]) -> pd.Da
     """Pair the rows of two tables that have equal values in some columns.
 
     Returns the labels of the paired rows in the columns new and old. Several equal rows of one
-    table are paired in their order.
+    table are paired in their order: their keys have the numbers 0, 1, ... as "occurrence".
     """
     new_keys = _row_keys(new, columns).assign(new=new.index)
     old_keys = _row_keys(old, columns).assign(old=old.index)

@@ -167,6 +167,8 @@ def statement_rows(
 ) -> list[StatementRow]:
     """Return the rows of the table on the index page, with their expressions evaluated.
 
+    A row that names several claims shows the one with the worst verdict.
+
     summary : content of manuscript/summary.yaml
     """
     rows = []
@@ -268,6 +270,7 @@ def answer(lines: Sequence[Line]) -> str:
     first_line, *other_lines = lines
     sentences = [_opening(first_line)]
     for group in SENTENCES:
+        # Each entry of a group has the words for one verdict.
         clauses = []
         for words in group:
             judged = [line for line in other_lines if line.claim.verdict == words.verdict]

@@ -40,7 +40,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     The files ``studies`` contain the table of the study `accuracy_cost`.
     """
     study = load_inputs(files).tables["accuracy_cost"]
-    # These rows have the errors of one setting each. The other rows are for another panel.
+    # These rows are for the trade-off between time and errors. Each has all errors of one setting.
     errors_by_setting = study[study["part"] == "trade"]
     save_table(timed(errors_by_setting), outputs["csv"])
     with house_style():
