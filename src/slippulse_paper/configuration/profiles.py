@@ -86,7 +86,10 @@ def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]
 
 
 def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return profiles without the names of the files from which their points were read."""
+    """Return profiles without the names of the files from which their points were read.
+
+    Results depend only on the points.
+    """
     copies = [dict(profile) for profile in profiles]
     for profile in copies:
         profile.pop("file", None)
@@ -141,7 +144,7 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
     """Return the pre-stress of one expanded profile."""
     if not any(key in profile for key in TABLES):
         return Prestress(**profile)
-    # Tables take time and are cached. The cache needs a hashable argument.
+    # The results are cached. The cache needs an argument that cannot be altered.
     return _prestress_of_table(json.dumps(profile, sort_keys=True))
 
 

@@ -122,8 +122,8 @@ def _missing_line(path: Path, config: Mapping) -> str:
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2 and isinstance(path[-2], str):
-        # The path may be simulations.NAME.boundary, where NAME is a misspelt name of a shipped entry.
-        # The shipped entry has all keys.
+        # In a path such as simulations.NAME.boundary, NAME may be the misspelt name of a shipped
+        # entry, which has all keys.
         siblings = _last_known_entry(path[:-2], config).value
         line += spelling_hint(path[-2], {*siblings} - {path[-2]})
         if path[0] == "simulations" and path[-2].startswith("fig"):

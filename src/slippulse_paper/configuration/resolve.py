@@ -102,8 +102,8 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
-    # Turn the single values of the scene into the profiles and lists of a simulation. LISTED has the
-    # keys that are lists in a simulation.
+    # Turn the single values of the scene into the profiles and lists of a simulation, in which the
+    # keys of LISTED have lists.
     profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
     extent = _extent(scene, _largest_damping_ratio(scene, model, dx), profile)
     given |= {key: [given[key]] for key in LISTED if key in given}

@@ -481,6 +481,7 @@ class Simulation(PhysicsOfSweep):
         require(is_consistent, "spacing.fixed: given with other keys", "no other key")
         units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
+        # These two keys use gamma, which is zero if the stress is held.
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
@@ -883,6 +884,8 @@ class Configuration(Block):
         """Raise ValueError if a scene has the name of a simulation or of another file."""
         problem = f"scenes.{name}: a simulation has the same name"
         require(name not in self.simulations, problem, "another name")
+        # Files of a scene are NAME.html, NAME.csv, NAME_numbers.csv and so on. The page index.html
+        # shows all scenes.
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
         problem = f"scenes.{name}: another file has the same name as its file"
@@ -897,7 +900,8 @@ class Configuration(Block):
 
         A reading is a number that was read off a published figure. ``key`` is its dotted key.
         """
-        # The kind of data that each measured column needs.
+        # The kind of data that each measured column needs. The trailing edge has a column for each
+        # time of `measure.trailing_times`.
         record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:
             record_for[f"trailing_edge_{time:g}"] = "fronts"

@@ -167,6 +167,7 @@ def figure_names(new: Path, old: Path) -> list[str]:
 
 def figure_pair(name: str, new: Path, old: Path) -> FigurePair:
     """Return both pictures of a figure, and whether both show the same numbers."""
+    # The numbers are None if the figure is not in the folder.
     new_numbers, old_numbers = _drawn_numbers(name, new), _drawn_numbers(name, old)
     return FigurePair(
         name,

@@ -66,11 +66,11 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     unpaired_old = unpaired_old.drop(on_other_lattices["old"])
 
     # Look for altered parameters among the remaining runs. A parameter has changed if none of its
-    # values occurs in both tables.
+    # values occurs in both tables. Derived parameters change because of others.
     is_kept = {name: unpaired_new[name].isin(unpaired_old[name]).any() for name in parameters}
     changed = [name for name in parameters if not is_kept[name]]
     altered_parameters = [name for name in changed if name not in DERIVED_COLUMNS]
-    if is_one_alteration(unpaired_new, unpaired_old, altered_parameters):
+    if have_one_value_in_each_table(unpaired_new, unpaired_old, altered_parameters):
         unchanged = [name for name in parameters if is_kept[name]]
         altered_runs = pair_rows(unpaired_new, unpaired_old, unchanged)
     else:
@@ -91,7 +91,9 @@ def columns_in_both(new: pd.DataFrame, old: pd.DataFrame, names: Iterable[str]) 
     return [name for name in names if name in new and name in old]
 
 
-def is_one_alteration(new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]) -> bool:
+def have_one_value_in_each_table(
+    new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]
+) -> bool:
     """Return True if each parameter has one value in all new runs and one in all old runs.
 
     If a parameter had several values, it would be unclear which runs belong together. Returns False
@@ -143,6 +145,7 @@ def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
     """
     names = list(names)
     text = describe_run(new, names)
+    # As texts, two values that are NaN are equal.
     differing = [name for name in names if str(new[name]) != str(old[name])]
     return f"{text} (old: {describe_run(old, differing)})" if differing else text
 

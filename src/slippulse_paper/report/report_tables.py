@@ -346,7 +346,7 @@ def layer_runs(study: pd.DataFrame) -> str:
     rows = []
     for part, title in LAYER_PARTS.items():
         on_all_grids = study[study["part"] == part].sort_values("cells", kind="stable")
-        # These columns identify a run. The row on its finest grid comes last.
+        # These columns identify a run (weakening is d_c). The row on its finest grid comes last.
         finest = on_all_grids.drop_duplicates(
             ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
         )
