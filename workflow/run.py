@@ -223,6 +223,7 @@ class Run:
     """A run of Snakemake in a separate process group. The group ends when this process ends."""
 
     def __init__(self, arguments: list[str]) -> None:
+        """Start Snakemake with some arguments, and a shell that watches this process."""
         # A profile of the user could change what is made.
         environment = {
             key: value for key, value in os.environ.items() if key != "SNAKEMAKE_PROFILE"

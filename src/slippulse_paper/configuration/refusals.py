@@ -203,7 +203,10 @@ def dereferenced(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def words_for(schema: dict[str, Any]) -> str:
-    """Return in words which values a schema allows."""
+    """Return in words which values a schema allows.
+
+    The definition of a key may have these words (``allowed``). Otherwise they follow from the type.
+    """
     schema = dereferenced(schema)
     json_type = schema.get("type")
     if "allowed" in schema:
@@ -240,6 +243,7 @@ def _not_null(schema: Mapping) -> list[dict[str, Any]]:
 def _range(schema: Mapping) -> str:
     """Return the limits of a number in words, such as "> 0 and <= 1"."""
     limits: dict[str, str] = {}
+    # The keys are those of JSON Schema, such as exclusiveMinimum.
     for key in LIMIT_SIGNS:
         if key in schema:
             # Exponents are written without plus signs and leading zeros.

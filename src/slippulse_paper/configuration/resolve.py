@@ -79,9 +79,10 @@ def _linear_law(alpha: float) -> Mapping:
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:
     """Return all simulations by name. Scenes are simulations of one run."""
-    dx = accuracy_of(config)["dx"]
+    preset_dx = accuracy_of(config)["dx"]
     scenes = {
-        name: scene_simulation(scene, config.model, dx) for name, scene in config.scenes.items()
+        name: scene_simulation(scene, config.model, preset_dx)
+        for name, scene in config.scenes.items()
     }
     return {**config.simulations, **scenes}
 

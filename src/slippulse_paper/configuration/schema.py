@@ -626,6 +626,7 @@ class NamedScene(Profile, PhysicsOfScene):
         allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
         require((converted.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
         converted |= self._tables_and_steps_in_model_units(layer)
+        # These are the quantities of the three numbers of a bump: position, amplitude and width.
         quantities = PROFILE_QUANTITIES["bumps"]
         converted["bumps"] = [
             tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps
@@ -634,22 +635,22 @@ class NamedScene(Profile, PhysicsOfScene):
 
     def _tables_and_steps_in_model_units(self, layer: Layer) -> dict[str, Any]:
         """Return the steps, points and rough background of a scene in non-dimensional units."""
-        tables: dict[str, Any] = {
-            "steps": [
-                (layer.convert_from_si(x, "length"), layer.level_from_pascal("steps", level))
-                for x, level in self.steps
-            ]
-        }
+        steps = []
+        for x, stress in self.steps:
+            # A refused stress is reported under the key.
+            level = layer.level_from_pascal(key="steps", stress=stress)
+            steps.append((layer.convert_from_si(x, "length"), level))
+        tables: dict[str, Any] = {"steps": steps}
         if self.points is not None:
-            x_in_metres, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x_in_metres, stresses = np.array(self.points, dtype=float).reshape(-1, 2).T
             x = layer.convert_from_si(x_in_metres, "length")
-            tau = layer.table_from_pascal("points", stress)
+            tau = layer.table_from_pascal(key="points", stress=stresses)
             tables["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
             background = self.rough.plain()
             deviation = layer.convert_from_si(background["deviation"], "stress_difference")
             converted = {
-                "level": layer.level_from_pascal("rough.level", background["level"]),
+                "level": layer.level_from_pascal(key="rough.level", stress=background["level"]),
                 "deviation": deviation,
             }
             for name in ("correlation_length", "start", "stop", "spacing"):

@@ -189,6 +189,7 @@ def embedded_picture(path: Path) -> Picture | None:
             picture.load()
             # A picture with a palette must be converted to full colour before it is made smaller.
             reduced = picture if picture.width <= MAX_PICTURE_WIDTH else picture.convert("RGB")
+            # The thumbnail keeps the proportions, and only its width is limited.
             reduced.thumbnail((MAX_PICTURE_WIDTH, 10 * MAX_PICTURE_WIDTH))
             with_palette = reduced.convert("RGB").quantize(
                 PICTURE_COLOURS, dither=Image.Dither.NONE

@@ -93,6 +93,7 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     options = ["--default-image-extension=pdf"]
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", "typst", options)
+    # The alternative text of each figure, by the name of the figure.
     alternatives = dict(ALTERNATIVE_TEXT.findall(text))
 
     def add_alternative_text(image: re.Match) -> str:

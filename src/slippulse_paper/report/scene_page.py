@@ -66,6 +66,7 @@ def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
     if "steps_and_bumps" in shown:
         shown["steps_and_bumps"] = _profile_text(attributes, layer)
     if layer is not None:
+        # QUANTITIES has the parameters with a unit.
         numbers_in_si = layer.numbers_to_si(attributes)
         for key in shown.keys() & QUANTITIES.keys():
             shown[key] = _with_unit(numbers_in_si[key], QUANTITIES[key])
