@@ -106,6 +106,7 @@ def _largest_prestress(profile: Prestress, dx: float) -> float:
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
     """Raise ValueError if the pulse has far too few blocks in every scene."""
+    # All scenes of a simulation have the same resolved_blocks.
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Computing the width takes time. Scenes with wide pulses come first, so that one is usually
     # enough. A pulse has many blocks if sqrt(gamma) dx is small and the pre-stress is large.
@@ -150,7 +151,7 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     scenes, samples = expand(with_promised_spacings(with_ends_of_lists(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
     runs = run_count(simulation) / chunks
-    # The memory of the solver is that of one run, since a run frees it at its end.
+    # The memory of the solver is for one run, since it is freed at the end of a run.
     return Bound(
         runs=runs,
         block_updates=runs * max(bound.block_updates for bound in bounds),

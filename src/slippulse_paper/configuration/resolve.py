@@ -164,7 +164,7 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
         (speed,) = _bounds_of_front_speeds(np.array([highest]), damping_ratio)
         reach = float(speed) * scene.duration
     else:
-        # The pre-stress is a table. Its front speed changes from place to place.
+        # The pre-stress is a table, so that the front speed depends on the position.
         (expanded_profile,) = ExpandedProfiles([profile])
         table = prestress_of(expanded_profile)
         # Exact speeds at all points of a table would take seconds. The speed is a convex function

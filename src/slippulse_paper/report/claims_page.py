@@ -67,6 +67,7 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
         "claims.html",
         html=markup_of(texts),
         summary=ledger.summary(),
+        # Claims that follow from others, or that are not in the paper, are not counted.
         uncounted=len(ledger.claims) - ledger.count(),
         groups=groups,
         findings=findings,
