@@ -50,7 +50,10 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
 
 
 def _with_points_in_profiles(simulation: Any, key: str, folder: Path) -> Any:
-    """Return a simulation, whose dotted key is ``key``, with the points in its list of profiles."""
+    """Return a simulation, whose dotted key is ``key``, with the points in its list of profiles.
+
+    The paths of files may be relative to ``folder``.
+    """
     if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
         return simulation
     profiles = [
@@ -63,7 +66,8 @@ def _with_points_in_profiles(simulation: Any, key: str, folder: Path) -> Any:
 def _with_points(profile: Any, key: str, folder: Path) -> Any:
     """Return a scene or profile, whose dotted key is ``key``, with the points of its file.
 
-    It is returned as it is if it names no file, or if it already has the points.
+    It is returned as it is if it names no file, or if it already has the points. The path of the
+    file may be relative to ``folder``.
     """
     names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
     if not names_file or "points" in profile:

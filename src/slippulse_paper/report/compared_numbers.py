@@ -112,6 +112,7 @@ def compare_numbers(
     only one of the two runs has a number, it counts as different on equal lattices, and is left out
     otherwise.
 
+    new, old : the paired runs, in the same order
     parameters : columns that describe a run
     """
     # The column "allowed" has the largest difference that the uncertainties allow.

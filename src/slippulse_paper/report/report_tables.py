@@ -244,7 +244,10 @@ def sentence_counts(sentences: Sequence[Mapping]) -> str:
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
-    """Return a table of the tested sentences, with their place in the paper and their claims."""
+    """Return a table of the tested sentences, with their place in the paper and their claims.
+
+    entries : all claims, by their id
+    """
     rows = []
     for sentence in sentences:
         claims = claims_of(entries, sentence)
