@@ -137,14 +137,16 @@ def parameters(config: Mapping, name: str) -> str:
 def _profile_values(simulation: Mapping, key: str) -> list:
     """Return the distinct values that the profiles of a simulation have for a key.
 
+    A width of None, which stands for a profile without a Gaussian, is left out.
+
     key : a key of the pre-stress, such as "left"
     """
     values: list = []
     # A simulation without the key "profiles" is itself the only profile.
     for profile in simulation.get("profiles") or [simulation]:
-        given = profile.get(key, [])
+        given = profile.get(key)
         values += given if isinstance(given, list) else [given]
-    return [*dict.fromkeys(values)]
+    return [value for value in dict.fromkeys(values) if value is not None]
 
 
 def _values_text(values: Sequence[float]) -> str:
