@@ -66,10 +66,11 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     unpaired_old = unpaired_old.drop(on_other_lattices["old"])
 
     # Look for altered parameters among the remaining runs. A parameter has changed if none of its
-    # values occurs in both tables. Derived parameters change because of others.
+    # values occurs in both tables. Derived parameters count only if no other one has changed.
     is_kept = {name: unpaired_new[name].isin(unpaired_old[name]).any() for name in parameters}
     changed = [name for name in parameters if not is_kept[name]]
-    altered_parameters = [name for name in changed if name not in DERIVED_COLUMNS]
+    independent = [name for name in changed if name not in DERIVED_COLUMNS]
+    altered_parameters = independent or changed
     if have_one_value_in_each_table(unpaired_new, unpaired_old, altered_parameters):
         unchanged = [name for name in parameters if is_kept[name]]
         altered_runs = pair_rows(unpaired_new, unpaired_old, unchanged)
