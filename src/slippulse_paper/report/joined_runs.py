@@ -51,8 +51,7 @@ class JoinedRuns:
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     """Join the runs that are the same, and then runs that differ only in altered parameters.
 
-    Of the same runs, those on equal lattices are joined first. A parameter is altered if it has one
-    value in all remaining new runs, and another value in all remaining old runs.
+    Of the same runs, those on equal lattices are joined first.
     """
     parameters = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS])
     lattice = columns_in_both(new, old, LATTICE_COLUMNS)
@@ -65,18 +64,7 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     unpaired_new = unpaired_new.drop(on_other_lattices["new"])
     unpaired_old = unpaired_old.drop(on_other_lattices["old"])
 
-    # Look for altered parameters among the remaining runs. A parameter has changed if none of its
-    # values occurs in both tables. Derived parameters count only if no other one has changed.
-    is_kept = {name: unpaired_new[name].isin(unpaired_old[name]).any() for name in parameters}
-    changed = [name for name in parameters if not is_kept[name]]
-    independent = [name for name in changed if name not in DERIVED_COLUMNS]
-    altered_parameters = independent or changed
-    if have_one_value_in_each_table(unpaired_new, unpaired_old, altered_parameters):
-        unchanged = [name for name in parameters if is_kept[name]]
-        altered_runs = pair_rows(unpaired_new, unpaired_old, unchanged)
-    else:
-        altered_runs = pd.DataFrame({"new": [], "old": []}, dtype=int)
-
+    altered_parameters, altered_runs = _pair_altered_runs(unpaired_new, unpaired_old, parameters)
     same_runs = pd.concat([on_equal_lattices, on_other_lattices])
     return JoinedRuns(
         same_runs=same_runs.sort_values("new", kind="stable"),
@@ -85,6 +73,26 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
         only_new=unpaired_new.index.difference(altered_runs["new"]),
         only_old=unpaired_old.index.difference(altered_runs["old"]),
     )
+
+
+def _pair_altered_runs(
+    new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]
+) -> tuple[list[str], pd.DataFrame]:
+    """Return the altered parameters, and pairs of runs that differ only in them.
+
+    A parameter is altered if it has one value in all new runs, and another value in all old runs.
+    If a parameter has changed in another way, there are no pairs.
+    """
+    # A parameter has changed if none of its values occurs in both tables.
+    is_kept = {name: new[name].isin(old[name]).any() for name in parameters}
+    changed = [name for name in parameters if not is_kept[name]]
+    # Derived parameters count only if no other one has changed.
+    independent = [name for name in changed if name not in DERIVED_COLUMNS]
+    altered_parameters = independent or changed
+    if have_one_value_in_each_table(new, old, altered_parameters):
+        unchanged = [name for name in parameters if is_kept[name]]
+        return altered_parameters, pair_rows(new, old, unchanged)
+    return altered_parameters, pd.DataFrame({"new": [], "old": []}, dtype=int)
 
 
 def columns_in_both(new: pd.DataFrame, old: pd.DataFrame, names: Iterable[str]) -> list[str]:
