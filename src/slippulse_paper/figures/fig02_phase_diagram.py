@@ -220,7 +220,10 @@ def draw_runs(axes: Axes, runs: pd.DataFrame, y_column: str) -> None:
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
-    """Draw one panel for each profile: slip velocity and pre-stress as functions of position."""
+    """Draw one panel for each profile: slip velocity and pre-stress as functions of position.
+
+    profiles : points of each profile; all profiles are at the same time
+    """
     strips = figure.subplots(len(profiles), 1, sharex=True)
     panel_letter(strips[0], "d")
     # All panels show the positions from -end to end.
@@ -235,6 +238,7 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
 def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
     """Draw the slip velocity of one profile divided by its largest value, and its pre-stress.
 
+    rows : points of the profile. All have the boundary, levels and regime of its scene
     number : number of the profile, as text
     end : the pre-stress is drawn from the position -end to the position end
     """
@@ -243,9 +247,9 @@ def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
     relative_velocity = rows["slip_velocity"] / rows["slip_velocity"].max()
     axes.fill_between(rows["x"], relative_velocity, color=tint(colour), linewidth=0.0)
     axes.plot(rows["x"], relative_velocity, color=colour)
-    gamma = int(first["boundary"] == "displacement")
+    capital_gamma = int(first["boundary"] == "displacement")
     levels = f"{setting(first['left'])}, {setting(first['right'])}"
-    label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {levels}"
+    label = rf"{number} $\Gamma = {capital_gamma}$, $\tau_0$ = {levels}"
     axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
     # The pre-stress stands above the velocity, on a scale of its own: its value 0 is at the height
     # zero, and its value 1 is higher by unit_height.

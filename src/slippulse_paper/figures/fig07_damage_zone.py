@@ -43,7 +43,11 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_curves(axes: Axes, curves: pd.DataFrame) -> None:
-    """Draw the stress drop for each thickness of the host rock, with a label at the right end."""
+    """Draw the stress drop for each thickness of the host rock, with a label at the right end.
+
+    A dashed line shows the limit of rigid host rock, with which the displacement is imposed at the
+    top of the damage zone (y = H).
+    """
     groups = curves.groupby("thickness_ratio")
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):

@@ -94,7 +94,10 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
-    """Return the columns that vary: numbers before texts, and then those with most values first."""
+    """Return the names of the columns that vary: first numbers, then texts.
+
+    In each of these two groups, the column with the most values comes first.
+    """
     # Only a sweep with pre-stress tables has the column profile.
     columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
     # If two columns are equal in every run, only the first one is kept. In the transposed table,

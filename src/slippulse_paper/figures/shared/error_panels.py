@@ -103,6 +103,8 @@ def _draw_frontiers(axes: Axes, rows: pd.DataFrame, cost: str) -> None:
 
     The localised scheme has one coloured line for each order, and the textbook scheme one thin
     black line.
+
+    cost : name of the column with the cost
     """
     frontier = rows[rows["role"] == "frontier"]
     orders = sorted(frontier.loc[frontier["scheme"] == "localised", "order"].unique())

@@ -101,7 +101,8 @@ def ratio_inset(
 
     box : place of the inset in the panel
     quantity : "length" or "time"
-    x_column, line_column : as in `draw_ratio`
+    x_column : column on the horizontal axis
+    line_column : there is one line, with its own colour, for each value of this column
     """
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
