@@ -73,6 +73,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for name, level_count in LEVEL_COUNTS.items():
         runs = tables[name][columns]
         parts.append(runs[runs["left"] == runs["right"]].assign(role="symmetric"))
+        # The final regime does not depend on gamma, so runs at one gamma are enough for the planes.
         runs = runs[runs["gamma"] == runs["gamma"].max()]
         has_drawn_left = runs["left"].isin(spread_values(runs["left"], level_count))
         has_drawn_right = runs["right"].isin(spread_values(runs["right"], level_count))
@@ -213,6 +214,7 @@ def draw_runs(axes: Axes, runs: pd.DataFrame, y_column: str) -> None:
     """
     for run in runs.itertuples():
         colour, _ = LOOKS[run.regime]
+        # If theory does not decide the regime, exact_regime is not the name of a regime.
         differs_from_theory = run.exact_regime in LOOKS and run.exact_regime != run.regime
         look = MARK | {"markerfacecolor": "white" if differs_from_theory else colour}
         marker = "x" if isinstance(run.run_flags, str) else "o"

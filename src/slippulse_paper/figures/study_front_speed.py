@@ -200,8 +200,9 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(line["dx"], line["speed"], **look)
         _mark_runs(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=label, **look)
+    # All runs have the same pre-stress.
     tau0 = float(rows["left"].iloc[0])
-    undamped = rows["undamped"].max()
+    undamped = 1.0 / np.sqrt(1.0 - tau0**2)
     strongly_damped = 1.0 / np.sqrt(1.0 - tau0)
     label = r"$1/\sqrt{1-\tau_0}$"
     _mark_speed(axes, strongly_damped, label, dashes=":", edge="bottom")
@@ -225,9 +226,10 @@ def _mark_runs(
 ) -> None:
     """Mark the runs among some rows in the colour of their damping ratio.
 
-    Markers are open if the theory should not hold for a run.
+    Markers are open if the run does not meet the conditions of the theory (column sound).
 
     x, y : columns on the axes
+    label : entry in the legend, for runs that meet the conditions
     """
     runs = rows[rows["role"] == "simulation"]
     groups = runs.groupby(["damping_ratio", runs["sound"].astype(bool)])

@@ -42,7 +42,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for number in range(held_top.sizes["point"]):
         parts.append(lattice_slip(point(held_top, number), exact).assign(role="lattice"))
     held_stress = data["regimes_beyond"]
-    # The runs with the lowest level on the left have the narrowest pulse.
+    # The velocity is drawn for the lowest level on the left. It gives the narrowest pulse, which
+    # needs the shortest time to cross the step.
     left_levels = held_stress["left"].values
     for index in np.flatnonzero(left_levels == left_levels.min()):
         velocities = largest_velocities(point(held_stress, int(index)))
@@ -52,6 +53,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 def lattice_slip(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
     """Return the final slip of a run as a function of the distance x from the step.
+
+    Only a block that has stuck has its final slip. About LATTICE_POINTS such blocks are kept.
 
     exact : the exact slip of all runs; the result covers the same distances
     """
@@ -161,9 +164,10 @@ def _finish_deviation(axes: Axes) -> None:
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the largest velocity as a function of time, with one line for each level.
 
-    A line has the colour of growth, decay or neither, and its level is written at its end.
+    A line has the colour of growth, decay or neither, and its level is written at its end. The line
+    of a pulse that dies ends before its velocity is below the panel.
     """
-    rows = rows[rows["largest_velocity"] > 0.0]
+    rows = rows[rows["largest_velocity"] > MIN_DRAWN_VELOCITY]
     # A pulse decays at a negative level, and grows at a positive one.
     colours = {-1.0: style.GREEN, 0.0: style.YELLOW, 1.0: style.PURPLE}
     look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center"}
@@ -171,16 +175,8 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = colours[float(np.sign(level))]
         time, velocity = line["time"], line["largest_velocity"]
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        label_position = (time.iloc[-1], velocity.iloc[-1])
-        if velocity.iloc[-1] <= MIN_DRAWN_VELOCITY:
-            # The label stands where the line leaves the panel at its bottom. Interpolation needs
-            # ascending velocities, but they fall with time, so their order is reversed.
-            falling_log_velocity = np.log(velocity.to_numpy())
-            exit_time = np.interp(
-                np.log(MIN_DRAWN_VELOCITY), falling_log_velocity[::-1], time.to_numpy()[::-1]
-            )
-            label_position = (exit_time, 1.15 * MIN_DRAWN_VELOCITY)
-        axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
+        end = (time.iloc[-1], velocity.iloc[-1])
+        axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set_xlim(None, 1.28 * rows["time"].max())

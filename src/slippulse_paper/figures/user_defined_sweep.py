@@ -60,7 +60,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     # The figure needs only the table of its sweep.
     (runs,) = tables.values()
     has_equal_levels = (runs["left"] == runs["right"]).all()
-    # With different levels, tau_0 is the same number for all runs, so that it does not vary.
+    # The column tau_0 has the level of both sides. If they differ in some run, it has the same
+    # number in all runs, so that `varying_columns` leaves it out.
     runs = runs.assign(tau_0=runs["left"] if has_equal_levels else 0.0)
     # If nothing varies, as in a single run, the axis shows the profile or the level on the left.
     axis_of_equal_runs = "profile" if "profile" in runs else "left"
