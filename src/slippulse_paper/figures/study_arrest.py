@@ -83,6 +83,7 @@ def draw(table: pd.DataFrame) -> Figure:
     stated fraction of its path.
     """
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE_WIDTH, 3.1, "ab")
+    # Exact paths go on for ever. They are drawn a little longer than the paths on lattices.
     end = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The colour scale is logarithmic and has no colour for 0.

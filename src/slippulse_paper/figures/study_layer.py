@@ -277,6 +277,7 @@ def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
     for outcome, rows in points.groupby("outcome"):
         look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]
         axes.plot(rows["fracture_energy"], _crossing_width(rows["gamma"]), **look)
+    # To the right of this line, a rupture needs more energy than the layer releases.
     axes.axvline(1.0, color=GREY, linewidth=0.6)
     narrowest = _crossing_width(points["gamma"].max())
     widest = _crossing_width(points["gamma"].min())

@@ -27,6 +27,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     plane_axes, pulse_axes, map_axes, arrest_axes = panels
+    # All runs with leaf springs have the same gamma.
     table = table.assign(scaled_rate=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     rows_by_role = style.by_role(table)
     runs = rows_by_role["lattice"]

@@ -106,6 +106,7 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
     different = runs[list(columns)].T.drop_duplicates().index
     counts = runs[different].nunique()
     varying = counts[counts > 1].sort_values(ascending=False, kind="stable").index
+    # A seed is an integer without a meaning of its own, so it counts as a text.
     numbers = [column for column in varying if runs[column].dtype.kind == "f"]
     texts = [column for column in varying if column not in numbers]
     return numbers + texts
@@ -132,7 +133,9 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_quantity(axes, rows)
     for empty_panel in panels[len(drawn) :]:
         empty_panel.set_visible(False)
-    figure.suptitle(table["fixed"].iloc[0])
+    # All panels are hidden if no run has a number, for example because all runs are too short.
+    no_numbers = "no run gives a number that this figure shows"
+    figure.suptitle(no_numbers if table.empty else table["fixed"].iloc[0])
     series, _ = panels[0].get_legend_handles_labels()
     handles = [*series, entry("simulation", marker="o", color=GREY)]
     if table["theory"].notna().any():
@@ -146,7 +149,8 @@ def draw(table: pd.DataFrame) -> Figure:
 def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw one quantity: runs as markers, open if flagged, and theory as a line.
 
-    Each series has a colour. If there are not enough colours, everything is grey.
+    A series is a set of runs that differ only in the parameter on the horizontal axis, and has a
+    colour. If there are not enough colours, everything is grey and has no entry in the legend.
     """
     groups = rows.groupby("series", sort=False)
     has_colours = 1 < groups.ngroups <= len(COLOUR_CYCLE)
@@ -155,8 +159,8 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
         group = group.sort_values("x")
         is_flagged = group["run_flags"].notna()
         axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-        # Values that are not to be drawn are NaN.
+        # NaN values are not drawn.
         unflagged, flagged = group["value"].mask(is_flagged), group["value"].where(is_flagged)
-        axes.plot(group["x"], unflagged, "o", color=colour, label=series or None)
+        axes.plot(group["x"], unflagged, "o", color=colour, label=series if has_colours else None)
         axes.plot(group["x"], flagged, "o", color=colour, **OPEN_MARKER)
     axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))
