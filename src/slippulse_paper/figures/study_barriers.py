@@ -50,7 +50,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
         fine = _interpolate_depths(rows, ["exact"], levels)
         curve = _interpolate_depths(rows, ["exact", "paper"], np.array(CURVE_LEVELS))
-        # Exact depths are proportional to gamma^(-1/2), and the estimate to gamma^(-1).
+        # The depths of the study are at gamma = 1. Exact depths are proportional to gamma^(-1/2), and
+        # the estimate to gamma^(-1).
         curve["exact"] /= CURVE_GAMMA**0.5
         curve["paper"] /= CURVE_GAMMA
         parts.append(fine.assign(part="fine", gamma=1.0, damping_ratio=ratio))
@@ -104,6 +105,7 @@ def draw(table: pd.DataFrame) -> Figure:
         # Markers on a map show the finest lattices.
         exact_depths = fine[fine["damping_ratio"] == ratio]
         lattice_depths = finest[finest["damping_ratio"] == ratio]
+        # Both maps have the same colours, so that one colour bar is enough.
         image = _draw_map(axes, exact_depths, lattice_depths, depth_range)
         axes.set_title(conditions(held=True, damping_ratio=ratio))
     bar = figure.colorbar(image, ax=map_panels, aspect=25, pad=0.02)

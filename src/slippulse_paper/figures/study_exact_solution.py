@@ -41,7 +41,7 @@ def draw(table: pd.DataFrame) -> Figure:
     for scene, colour in SCENE_COLOURS.items():
         rows = table[table["scene"] == scene]
         look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
-        # The exact solution is drawn in lines, and the lattice as markers. The columns release and
+        # The exact solution is drawn as lines, and the lattice as markers. The columns release and
         # stick have the times at which the front and the trailing edge reach a position.
         for role, front_style, trailing_style in (("exact", "-", "--"), ("lattice", "o", "s")):
             curve = rows[rows["role"] == role]

@@ -164,8 +164,8 @@ def _finish_deviation(axes: Axes) -> None:
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the largest velocity as a function of time, with one line for each level.
 
-    A line has the colour of growth, decay or neither, and its level is written at its end. The line
-    of a pulse that dies ends before its velocity is below the panel.
+    A line has the colour of growth, decay or neither, and its level is written at its end.
+    Velocities below the panel, such as those of a dead pulse, are left out.
     """
     rows = rows[rows["largest_velocity"] > MIN_DRAWN_VELOCITY]
     # A pulse decays at a negative level, and grows at a positive one.
