@@ -188,7 +188,8 @@ def draw(table: pd.DataFrame) -> Figure:
     """
     row_counts = table.groupby("panel")["row"].nunique()
     # Each panel has a strip with the pre-stress, and below it axes with the rows of blocks. These
-    # are their heights in inches, from top to bottom.
+    # are their heights in inches, from top to bottom. The figure also has room for titles, axis
+    # labels and the legend.
     heights: list[float] = []
     for name, row_distance in ROW_DISTANCES.items():
         rows_height = SPACING_HEIGHT * (row_distance * row_counts[name] + 0.12)

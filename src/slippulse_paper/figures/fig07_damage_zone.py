@@ -66,7 +66,7 @@ def draw_curves(axes: Axes, curves: pd.DataFrame) -> None:
 def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     """Draw the damage zone under host rock, and the displacement as a function of height.
 
-    before, after : displacement before and after slip, by height y
+    before, after : displacement before and after slip, from the fault (y = 0) upwards
     """
     top = float(after["y"].max())
     draw_layers(axes, top)

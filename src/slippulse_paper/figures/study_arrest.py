@@ -95,6 +95,7 @@ def draw(table: pd.DataFrame) -> Figure:
         label = f"$b$ = {ratio:g}"
         path_axes.plot(last["time"], last["to_go"], marker, label=label, color=colour)
         draw_times(spacing_axes, rows_by_role["run"].sort_values("dx"), marker, colour)
+    # All runs have the same fraction, and the other rows have none.
     fraction = table["fraction"].max()
     handles = [*style.legend_handles([path_axes]), *legend_entries(fraction)]
     style.legend_below(figure, handles, columns=5)

@@ -50,8 +50,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
         fine = _interpolate_depths(rows, ["exact"], levels)
         curve = _interpolate_depths(rows, ["exact", "paper"], np.array(CURVE_LEVELS))
-        # The depths of the study are at gamma = 1. Exact depths are proportional to gamma^(-1/2), and
-        # the estimate to gamma^(-1).
+        # The study has depths at gamma = 1. Exact depths are proportional to gamma^(-1/2), and the
+        # estimate to gamma^(-1).
         curve["exact"] /= CURVE_GAMMA**0.5
         curve["paper"] /= CURVE_GAMMA
         parts.append(fine.assign(part="fine", gamma=1.0, damping_ratio=ratio))

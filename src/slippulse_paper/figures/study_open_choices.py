@@ -74,6 +74,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
     The claim with the largest value is on top.
     """
+    # A CSV file has NaN in place of an empty text.
     table = table.fillna({"choice": "", "release": ""})
     largest = table.groupby(["id", "label"])["over"].max().sort_values()
     figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(largest)), layout="constrained")

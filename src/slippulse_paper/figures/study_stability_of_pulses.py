@@ -98,6 +98,7 @@ def draw(table: pd.DataFrame) -> Figure:
         _draw_deviation(deviation_axes, exact, marked, colour)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
+    # All runs have the same level before the step and the same spacing.
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
     handles_of_levels, _ = slip_axes.get_legend_handles_labels()
     lattice_label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"

@@ -124,6 +124,7 @@ def _text(value: float | str) -> str:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each quantity: runs as markers, open if flagged, and theory as lines."""
+    # A CSV file has NaN in place of an empty text.
     table = table.assign(series=table["series"].astype(object).fillna(""))
     figure, panels = new_panels(PAGE_WIDTH, 4.2, "abc;def")
     rows_by_quantity = [rows for _, rows in table.groupby("quantity", sort=False)]
