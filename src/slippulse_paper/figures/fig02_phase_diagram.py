@@ -82,7 +82,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the final regimes, and on the right the velocity profiles of some of them, with numbers.
+    """Draw the final regimes, and on the right numbered velocity profiles of some of them (d).
 
     Panel a shows runs with equal pre-stress on both sides, as a function of tau_0 and gamma: above
     for the displacement boundary, and below for the stress boundary, where gamma is 0. Panels b and
