@@ -165,10 +165,11 @@ def _finish_deviation(axes: Axes) -> None:
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the largest velocity as a function of time, with one line for each level.
 
-    A line has the colour of growth, decay or neither, and its level is written at its end.
-    Velocities below the panel, such as those of a dead pulse, are left out.
+    A line has the colour of growth, decay or neither. Its level is written at its end, or where it
+    leaves the panel.
     """
-    rows = rows[rows["largest_velocity"] > MIN_DRAWN_VELOCITY]
+    # The velocity of a dead pulse is 0, which a logarithmic axis cannot show.
+    rows = rows[rows["largest_velocity"] > 0.0]
     # A pulse decays at a negative level, and grows at a positive one.
     colours = {-1.0: style.GREEN, 0.0: style.YELLOW, 1.0: style.PURPLE}
     look: Look = {"xytext": (4, 0), "textcoords": "offset points", "va": "center"}
@@ -176,8 +177,15 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = colours[float(np.sign(level))]
         time, velocity = line["time"], line["largest_velocity"]
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        end = (time.iloc[-1], velocity.iloc[-1])
-        axes.annotate(setting(level), end, color=BLACK, fontsize=SMALL_TEXT, **look)
+        label_position = (time.iloc[-1], velocity.iloc[-1])
+        if velocity.iloc[-1] <= MIN_DRAWN_VELOCITY:
+            # The line leaves the panel at its bottom. It is straight on the logarithmic axis, so
+            # logarithms are interpolated. They fall with time, but must ascend for interpolation.
+            ascending_logs = np.log(velocity.to_numpy()[::-1])
+            times = time.to_numpy()[::-1]
+            exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending_logs, times)
+            label_position = (exit_time, 1.15 * MIN_DRAWN_VELOCITY)
+        axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
     axes.set_xlim(None, 1.28 * rows["time"].max())
