@@ -75,7 +75,7 @@ def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
     has its position.
     """
     step_position, level = prestress_from(run.attrs).steps[-1]
-    # The slice leaves out the position 0.
+    # The right pulse is at positions above 0. The slice leaves out 0 itself.
     velocity_on_right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
     largest = velocity_on_right.max("sample_position").values
     rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
