@@ -28,7 +28,8 @@ PERIOD_IN_CORRELATION_LENGTHS = 400
 def spectrum(parameters: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """Return the wave numbers of a rough field, and the variance that each of them contributes.
 
-    The field is periodic here, so that the wave numbers are discrete.
+    The field has a von Karman spectrum, which falls as (1 + k^2 l^2)^-(hurst + 1/2), where l is the
+    correlation length. It is periodic here, so that the wave numbers k are discrete.
     """
     correlation_length, spacing = parameters["correlation_length"], parameters["spacing"]
     point_count = round(PERIOD_IN_CORRELATION_LENGTHS * correlation_length / spacing)
