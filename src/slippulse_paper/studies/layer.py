@@ -262,14 +262,15 @@ def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int 
         station; NaN if none does
     sliding_again : length of the fault beyond the first station that slides again at the end
     """
-    distances = [station * stretch(scene.gamma) for station in FAR_STATIONS]
-    rows = measured_rows(part, scene, run, [side * distance for distance in distances], side)
+    station_distances = [station * stretch(scene.gamma) for station in FAR_STATIONS]
+    positions = [side * distance for distance in station_distances]
+    rows = measured_rows(part, scene, run, positions, side)
     sliding_time_at_first_station = rows[0]["pulse_width"] / rows[0]["speed"]
     sliding_time = run.stick_time - run.release_time
     sticks_early = sliding_time < SPLIT_FRACTION * sliding_time_at_first_station
     distance = side * run.x
-    is_beyond_first_station = distance > distances[0]
-    is_split = is_beyond_first_station & (distance < distances[-1]) & sticks_early
+    is_beyond_first_station = distance > station_distances[0]
+    is_split = is_beyond_first_station & (distance < station_distances[-1]) & sticks_early
     # The first row of velocities is that of the fault, which is the bottom of the layer.
     has_stuck, is_sliding = np.isfinite(run.stick_time), run.velocity[0] > 0.0
     slides_again = is_beyond_first_station & has_stuck & is_sliding

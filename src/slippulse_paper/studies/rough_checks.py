@@ -237,8 +237,11 @@ def slip_beyond_bump(sweep: Mapping[str, Any], profiles: Sequence[Profile]) -> n
     the same for profiles without the bump.
     """
     scenes = scenes_of(sweep, profiles)
-    level, gamma = profiles[0]["rough"]["level"], scenes[0].gamma
-    pulse = steady_pulse(level, gamma, damping_ratio=scenes[0].damping_ratio)
+    # All scenes have the same level, elasticity ratio, damping ratio and release rule.
+    scene, level = scenes[0], profiles[0]["rough"]["level"]
+    pulse = steady_pulse(
+        level, scene.gamma, damping_ratio=scene.damping_ratio, release=scene.release
+    )
     memory = pulse.width / (pulse.speed - 1.0)
     end_of_bump = BUMP_POSITION + BUMP_REACH_IN_WIDTHS * BUMP_WIDTH
     positions = end_of_bump + memory * RELATIVE_DISTANCES
