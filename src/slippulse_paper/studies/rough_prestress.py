@@ -351,8 +351,9 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
     for seed in range(FIRST_LONG_SEED, FIRST_LONG_SEED + LONG_SEEDS):
         field_parameters["seed"] = seed
         prestress = rough(**field_parameters).tau * background_weight + smooth_prestress
-        death = balance_position(x, LONG_SPACING * np.cumsum(prestress))
-        fates.append(Fate(min(death, LONG_DISTANCE), died=bool(death < LONG_DISTANCE)))
+        death_position = balance_position(x, LONG_SPACING * np.cumsum(prestress))
+        has_died = bool(death_position < LONG_DISTANCE)
+        fates.append(Fate(min(death_position, LONG_DISTANCE), has_died))
     row = {"part": "long"} | death_rate(fates, START)
     row |= survival_exponent(fates, ASYMPTOTIC_DISTANCE)
     curve = survival(fates).iloc[::LONG_CURVE_STEP].assign(part="long_survival")

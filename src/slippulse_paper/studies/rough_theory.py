@@ -1,7 +1,8 @@
 """Theory of pulses on a rough pre-stress: death rate, random walk, and the balance at death.
 
 The parameters of an ensemble of rough pre-stress fields are passed as a mapping, with the mean of
-the field (level), its standard deviation, correlation_length, hurst exponent and grid spacing.
+the field (level), its standard deviation, correlation_length, hurst exponent and grid spacing. The
+death rate also needs the gamma and the damping_ratio of the runs.
 """
 
 import math
