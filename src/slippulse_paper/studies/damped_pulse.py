@@ -39,15 +39,15 @@ def curve_rows(swept_runs: list[Run]) -> list[dict[str, Any]]:
     that share them.
     """
     first = swept_runs[0]
-    dx, gamma, release = first.dx, first.gamma, first.release
     largest_ratio = max(run.damping_ratio for run in swept_runs)
     damping_ratios = largest_ratio * RELATIVE_DAMPING_RATIOS
     rows = []
     for level in sorted({run.prestress.left for run in swept_runs}):
-        paper = paper_pulse(level, gamma)
-        speeds = front_speed(level, damping_ratios, release)
+        paper = paper_pulse(level, first.gamma)
+        speeds = front_speed(level, damping_ratios, first.release)
         for damping_ratio, speed in zip(damping_ratios, speeds, strict=True):
-            pulse = pulse_at_speed(level, gamma, damping_ratio * dx, speed)
+            beta = damping_ratio * first.dx
+            pulse = pulse_at_speed(level, first.gamma, beta, speed)
             for quantity in QUANTITIES:
                 ratio_to_paper = getattr(pulse, quantity) / getattr(paper, quantity)
                 rows.append(row_of("curve", level, damping_ratio, quantity, ratio_to_paper))

@@ -118,8 +118,11 @@ def fates_on_both_sides(scenes: Sequence[Scene], end_of_track: float) -> list[Fa
 
     end_of_track : distance at which the rough pre-stress ends on both sides
     """
-    runs = [simulated_run(scene) for scene in scenes]
-    return [fate_of_pulse(run, side, stop=end_of_track) for run in runs for side in (1, -1)]
+    fates = []
+    for scene in scenes:
+        run = simulated_run(scene)
+        fates += [fate_of_pulse(run, side, stop=end_of_track) for side in (1, -1)]
+    return fates
 
 
 def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
