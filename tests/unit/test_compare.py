@@ -37,7 +37,7 @@ def tree(folder: Path, **changes) -> Path:
     return folder
 
 
-NAN = math.nan
+NAN, INF = math.nan, math.inf
 ELASTIC, DRAFT = CONFIG | {"model": {"release": "elastic"}}, CONFIG | {"preset": "draft"}
 DIFFERENT = [
     # The measured numbers are compared, whatever an older study has.
@@ -54,6 +54,10 @@ DIFFERENT = [
     ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
     ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
     ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one folder only: width_at_end"),
+    # An infinite number agrees only with an equal one.
+    ({"speed": INF}, {"speed": INF}, "1 of 1 numbers agree"),
+    ({"speed": INF}, {}, "speed: inf against 1; allowed: a difference of 0"),
+    ({}, {"speed": INF}, "speed: 1 against inf"),
     # Numbers agree within both uncertainties, at any preset.
     *(({}, other, "1 of 1 numbers agree") for other in ({}, {"speed": 1.015}, {"config": DRAFT})),
 ]

@@ -125,7 +125,10 @@ def compare_numbers(
     tolerance = EQUAL_LATTICE_TOLERANCE * numbers["new"].abs().clip(lower=1.0)
     numbers["allowed"] = numbers["allowed"].mask(should_be_equal, tolerance)
 
-    agrees = (numbers["new"] - numbers["old"]).abs() <= numbers["allowed"]
+    # An infinite number agrees only with an equal one.
+    numbers.loc[np.isinf(numbers["new"]), "allowed"] = 0.0
+    difference = (numbers["new"] - numbers["old"]).abs()
+    agrees = (difference <= numbers["allowed"]) | (numbers["new"] == numbers["old"])
     is_unknown = ~agrees & ~is_same_lattice & ~has_uncertainty
     numbers["outcome"] = DIFFERS
     numbers.loc[agrees, "outcome"] = AGREES
