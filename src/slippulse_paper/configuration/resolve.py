@@ -95,11 +95,10 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
 
     dx : block spacing of the preset, which is used unless the scene sets its own
     """
-    # A layer determines this ratio. The conversion below removes the layer.
+    # The friction ratio follows from the layer, which the conversion to model units removes.
     friction_ratio = None
     if scene.layer is not None:
         friction_ratio = scene.layer.layer(scene.boundary).friction_ratio
-    # The scene in these units has no layer any more.
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]

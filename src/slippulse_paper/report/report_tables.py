@@ -285,7 +285,7 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
     """Return a table of the observed order and the relative uncertainty of STUDIED_QUANTITIES.
 
-    The column "runs" counts the runs with a known uncertainty, or all runs if there are none.
+    The column "runs" counts the runs with a known uncertainty.
 
     tables : tables by name; those of grid studies have names such as "uncertainties/NAME"
     """
@@ -295,7 +295,7 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
         study = study[study["quantity"] == quantity]
         relative = (study["uncertainty"] / study["value"].abs()).dropna()
         if relative.empty:
-            rows.append((name, len(study), DASH, DASH, DASH))
+            rows.append((name, 0, DASH, DASH, DASH))
             continue
         orders = study["observed_order"]
         order = number(orders.median(), 2) if orders.notna().any() else DASH

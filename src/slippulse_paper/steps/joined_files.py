@@ -63,6 +63,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     # The columns of the joined table have the order of the first chunk in this list. It must be the
     # chunk with the first run of the sweep.
     chunks.sort(key=lambda chunk: chunk.index[0])
+    # A chunk lacks the columns of numbers that were measured in none of its runs.
     table = pd.concat(chunks).sort_index().fillna("")
     if has_factor:
         # Move the column to the end.
