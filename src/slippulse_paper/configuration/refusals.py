@@ -142,7 +142,7 @@ class _Entry(NamedTuple):
 def _last_known_entry(path: Path, config: Any) -> _Entry:
     """Return the last entry on a path of pydantic that has a value and a single schema.
 
-    The path goes further if a value has several allowed forms, or if a key is missing.
+    The path may lead on to a missing key, or to one of several allowed forms of a value.
     """
     schema, value = dereferenced(json_schema()), config
     for depth, part in enumerate(path):

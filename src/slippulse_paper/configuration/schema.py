@@ -79,6 +79,7 @@ def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
 
 def _all_different(values: list[T]) -> list[T]:
     """Return a list unchanged, or raise an error if it has an entry twice."""
+    # Entries may be lists or mappings, which a set cannot hold. Their texts are compared instead.
     if len({*map(repr, values)}) < len(values):
         raise PydanticCustomError("different", "an entry twice")
     return values
@@ -911,6 +912,7 @@ class Configuration(Block):
         measured = "a measured number, which is a column of the tables in results/measurements"
         check_name(f"{key}.quantity", quantity, record_for, measured)
         needed, recorded = record_for[quantity], self.simulations[simulation].record
+        # Every simulation records "fronts".
         allowed = (
             f"a number that simulations.{simulation} records, or record: [fronts, {needed}] there"
         )
