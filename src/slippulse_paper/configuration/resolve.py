@@ -151,13 +151,13 @@ def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndar
 def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any]) -> float:
     """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
 
-    It is the sum of the farthest distance at which slip starts, the largest front speed times the
-    duration, and an allowance for the Gaussian.
+    It is the sum of the distance of the farthest bump, where slip may start, the distance that a
+    front covers in the duration, and the width in which the Gaussian at x = 0 makes it faster.
 
     damping_ratio : largest damping ratio of the scene
     profile : the keys of the scene that describe its pre-stress
     """
-    # Slip may start at a bump, and four widths away from its centre a bump is negligible.
+    # Four widths away from its centre, a bump is negligible.
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
     if scene.left is not None and scene.right is not None:
         step_levels = [level for _, level in scene.steps]
@@ -174,13 +174,14 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
         highest = max([0.0, *table_levels])
         levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
         speeds = _bounds_of_front_speeds(levels, damping_ratio)
+        # In a table, slip may start at any point within nucleation_reach.
         reach = bound_front_reach(
             table,
             start=table.nucleation_reach,
             duration=scene.duration,
             speeds_at=lambda tau: np.interp(tau, levels, speeds),
         )
-    # Within three widths, the Gaussian at x = 0 raises the speed.
+    # Three widths away from x = 0, the Gaussian is negligible.
     width = scene.width or 0.0
     return farthest_bump + reach + 3.0 * width
 
