@@ -50,8 +50,9 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
     # If any run is refused, one at the ends of the lists is, too. Only these are checked.
     scenes, _ = expand(with_promised_spacings(with_ends_of_lists(sweep)))
-    _check_profiles(scenes)
+    _refuse_low_prestress(scenes)
     _check_resolution(scenes)
+    # A scene may also be refused on the coarsest lattice of the grid study.
     coarsest = max(accuracy["coarser"])
     try:
         expand(with_promised_spacings(with_ends_of_lists(sweep | {"coarser": coarsest})))
@@ -71,7 +72,7 @@ def _note_on_units(config: Configuration, name: str) -> str:
     return f" ({scene.layer.layer(scene.boundary).units_in_words})"
 
 
-def _check_profiles(scenes: Sequence[Scene]) -> None:
+def _refuse_low_prestress(scenes: Sequence[Scene]) -> None:
     """Raise ValueError for a pre-stress with which nothing ever moves."""
     # Many scenes share a profile. A dictionary keeps each profile and spacing once.
     different_profiles = dict.fromkeys((scene.prestress, scene.dx) for scene in scenes)
@@ -105,7 +106,11 @@ def _largest_prestress(profile: Prestress, dx: float) -> float:
 
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
-    """Raise ValueError if the pulse has far too few blocks in every scene."""
+    """Raise ValueError if the pulse has far too few blocks in every scene.
+
+    A run is only flagged if its pulse has fewer than ``resolved_blocks`` blocks. A simulation is
+    refused if no pulse has the fraction HARDLY_RESOLVED of them.
+    """
     # All scenes of a simulation have the same resolved_blocks.
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Computing the width takes time. Scenes with wide pulses come first, so that one is usually
