@@ -624,6 +624,7 @@ class NamedScene(Profile, PhysicsOfScene):
                 converted[name] = layer.level_from_pascal(name, value)
             else:
                 converted[name] = layer.convert_from_si(value, quantity)
+        # The spacing, if the scene has one, is now in units of the thickness.
         allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
         require((converted.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
         converted |= self._tables_and_steps_in_model_units(layer)
