@@ -76,8 +76,10 @@ def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
     """
     kind, path = problem["type"], problem["loc"]
     if kind == "value_error":
+        # The reason begins with the key in the mapping.
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
+    # A number that is missing in a row has an int at the end of the path. It is another kind.
     if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     return _unknown_key_line(path, config) if kind == "extra_forbidden" else None

@@ -141,8 +141,8 @@ def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndar
     # At a pre-stress of 0 or less, a front is not faster than waves, whose speed is 1.
     is_fast, speeds = levels > 0.0, np.ones(levels.shape)
     if is_fast.any():
-        # Theory covers damping ratios up to this limit. With the release rule "total", fronts are
-        # at least as fast as with the other one.
+        # `front_speed` refuses damping ratios above 1e100, which no useful scene has. With the
+        # release rule "total", fronts are at least as fast as with the other one.
         ratio = min(damping_ratio, LARGEST_RATIO)
         speeds[is_fast] = front_speed(levels[is_fast], ratio, release="total")
     return speeds

@@ -574,9 +574,10 @@ class NamedScene(Profile, PhysicsOfScene):
 
     @model_validator(mode="after")
     def _check_in_model_units(self) -> Self:
-        """Raise ValueError if the scene is not allowed.
+        """Raise ValueError if the spacing, or a key of a scene with a layer, is not allowed.
 
-        A scene with a layer is converted from SI units first.
+        The pre-stress of a scene with a layer is converted from SI units before it is checked. It
+        has been checked already if there is no layer.
         """
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
