@@ -119,6 +119,17 @@ def test_runs_are_joined_by_their_parameters_in_any_order(tmp_path):
     assert altered.set_index("quantity").loc["speed", ["new", "old"]].tolist() == [0.1, 0.4]
 
 
+def test_runs_are_joined_if_one_table_has_only_whole_numbers(tmp_path):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"left": left} for left in (1, 2)])
+    table_of(other, [{"left": left} for left in (0.5, 1, 2)])
+    result = compare(here, other)
+    runs = result.runs[0]
+    assert (runs.same_count, runs.only_new, runs.only_old) == (2, [], ["left 0.5"])
+    # The text of a run has no old value that is equal to the new one.
+    assert {*result.numbers["run"]} == {"left 1", "left 2"}
+
+
 def test_runs_of_one_side_are_listed(tmp_path, capsys):
     here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
     table_of(here, [{"left": left, "gamma": 0.3} for left in (0.1, 0.2)])

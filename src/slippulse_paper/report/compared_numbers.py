@@ -77,7 +77,10 @@ def compared_columns(new: pd.DataFrame, old: pd.DataFrame) -> ComparedColumns:
 
 def read_runs(path: Path) -> pd.DataFrame:
     """Read a table of measured runs. Raises ValueError if it lacks a parameter of the runs."""
-    return _read_table(path, RUN_COLUMNS)
+    table = _read_table(path, RUN_COLUMNS)
+    # Runs are joined by the texts of their parameters. A column that has only whole numbers in one
+    # of the tables would have other texts there if it were not converted.
+    return table.astype(dict.fromkeys(table.select_dtypes("number"), float))
 
 
 def with_uncertainties(table: pd.DataFrame, numbers: list[str], study: Path) -> MeasuredRuns:
