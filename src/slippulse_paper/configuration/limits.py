@@ -29,6 +29,7 @@ def simulation_problems(config: Configuration) -> list[str]:
     """Return a line for each simulation with a scene that cannot be run.
 
     The scenes are checked on their own lattice and on the coarsest lattice of the grid study.
+    Extreme values may overflow. The checks refuse them, and so numpy need not warn.
     """
     accuracy, problems = accuracy_of(config), []
     for name, simulation in all_simulations(config).items():

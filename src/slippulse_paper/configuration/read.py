@@ -238,7 +238,7 @@ class _PlainComposer(Composer):
             refusal = f"tag {short_repr(str(event.tag))}; allowed: no tags"
         elif is_key and not isinstance(event, ScalarEvent):
             refusal = "a collection as a key; allowed: text"
-        # The top node has no parent. It is missing in an empty file, which is allowed.
+        # Without a parent the file is empty, which `read_overlay` refuses.
         elif _is_missing(event) and parent is not None:
             refusal = _refusal_of_missing_value(parent, index)
             if isinstance(index, ScalarNode):
