@@ -112,8 +112,7 @@ def compare_numbers(
 
     The result has one row for each number of each run, with its outcome: the numbers agree, or they
     differ, or it is unknown because different lattices gave them and they have no uncertainty. If
-    only one of the two runs has a number, it counts as different on equal lattices, and is left out
-    otherwise.
+    only one of the two runs has a number, it counts as different on equal lattices only.
 
     new, old : the paired runs, in the same order
     parameters : columns that describe a run
@@ -137,6 +136,7 @@ def compare_numbers(
     numbers.loc[agrees, "outcome"] = AGREES
     numbers.loc[is_unknown, "outcome"] = UNKNOWN
 
+    # On a coarser lattice some numbers cannot be measured. A missing number is no difference then.
     has_both = numbers[["new", "old"]].notna().all(axis=1)
     has_one = numbers[["new", "old"]].notna().any(axis=1)
     return numbers[has_both | (has_one & is_same_lattice)]

@@ -341,15 +341,16 @@ def layer_runs(study: pd.DataFrame) -> str:
 
     The strength falls by Delta tau over the slip d_c. The zone behind the tip in which it falls has
     a length of the order of G d_c/Delta tau, which is gamma d_c in units of the height H. The table
-    has this length in cells of the finest grid of each run. It also lists the numbers of cells over
-    the height H of all grids.
+    has this length in cells of the finest grid of each run.
 
     study : the table of the study layer
     """
     rows = []
     for part, title in LAYER_PARTS.items():
         on_all_grids = study[study["part"] == part].sort_values("cells", kind="stable")
-        # These columns identify a run (weakening is d_c). The row on its finest grid comes last.
+        # The column "cells" has the cells over the height H. The columns below identify a run:
+        # "weakening" is d_c, "coupling" the friction coefficient if the strength follows the
+        # pressure, and "before" the pre-stress before a step. The finest grid of a run comes last.
         finest = on_all_grids.drop_duplicates(
             ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
         )
