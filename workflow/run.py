@@ -368,6 +368,7 @@ def verify(make_options: Mapping[str, str]) -> int:
 
 def rulegraph(make_options: Mapping[str, str]) -> int:
     """Print the graph of the rules in the mermaid format, and return the exit code."""
+    # A figure and the verdicts need the main rules. The graph of all rules is hard to read.
     targets = targets_of(make_options) or [
         "results/figures/fig05_scaling.png",
         "results/claims.json",

@@ -54,9 +54,9 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
     entry = _last_known_entry(path, config)
-    # Errors such as an unknown key are errors of a mapping, and the path leads to one of its keys.
-    # If the mapping is only one of several forms that a value may have, the known entry ends before
-    # it. The value is then refused as a whole, without regard to its keys.
+    # Find the mapping that may be in error. The path of an unknown or missing key ends with the
+    # key. If the mapping is only one of several forms that a value may have, the known entry ends
+    # before it. The value is then refused as a whole, without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
     is_known_mapping = len(mapping_path) <= len(entry.path)
     if is_known_mapping:
