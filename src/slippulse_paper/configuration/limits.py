@@ -132,8 +132,8 @@ def _pulse_blocks(scene: Scene) -> float:
     """Return the number of blocks across the pulse of a scene.
 
     If the stress is held, return the number of blocks across the narrowest Gaussian instead, since
-    a pulse then has no constant width. The result is infinity if there are no blocks, or if theory
-    does not give a pulse width.
+    a pulse then has no constant width. The result is infinity, with which no scene is refused, if
+    there are no blocks or theory gives no pulse width.
     """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
@@ -141,7 +141,7 @@ def _pulse_blocks(scene: Scene) -> float:
     if scene.scheme == "continuum" or level <= 0.0 or used_extra_terms(vars(scene)):
         return math.inf
     try:
-        # The pulse in uniform pre-stress at the higher of the two levels.
+        # The pulse is widest in uniform pre-stress at the higher of the two levels.
         speed = float(front_speed(level, scene.damping_ratio, scene.release))
         return pulse_at_speed(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):
