@@ -208,7 +208,7 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
     readings : the part ``published`` of the configuration
     """
-    # These two claims have our values as further numbers, by the statement of the reading.
+    # The further numbers of these two claims are our values, by the statement of each reading.
     left_panel = ledger("published_space_time_figure").further
     right_panel = ledger("published_space_time_figure_right").further
     our_values = left_panel | right_panel
