@@ -75,7 +75,10 @@ def run_title(rows_by_role: dict[str, pd.DataFrame]) -> str:
 
 
 def _title_in_si(parameters: pd.DataFrame) -> str:
-    """Return a title with the condition on top, thickness, elasticity, damping and spacing."""
+    """Return a title with the condition on top, thickness, elasticity, damping and spacing.
+
+    parameters : one row for each parameter, with its name (series), value and unit (or NaN)
+    """
     rows = parameters.fillna({"unit": ""}).set_index("series")
     text = {name: f"{row['value']:.4g} {row['unit']}".strip() for name, row in rows.iterrows()}
     condition_on_top = "stress held on top"
@@ -114,7 +117,7 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     if sample_count < 2:
         return float(lowest - margin), float(highest + margin)
     first_sample, last_sample = run["sample_position"].values[[0, -1]]
-    # The margin is at least three intervals between samples wide.
+    # The margin is at least three intervals between samples wide, so that it contains samples.
     margin = max(margin, 3.0 * (last_sample - first_sample) / (sample_count - 1))
     lower = lowest - margin if first_sample < lowest else first_sample
     upper = highest + margin if last_sample > highest else last_sample
@@ -159,6 +162,7 @@ def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
     # The blocks of a run end near its fronts. The pre-stress is computed from its profile, which is
     # known everywhere.
     lower, upper = drawn_range(run)
+    # The nucleation at x = 0 may be narrower than the distance between these points.
     x = np.union1d(np.linspace(lower, upper, FRONT_POINTS), 0.0)
     profile = prestress_from(run.attrs)
     if profile.points:

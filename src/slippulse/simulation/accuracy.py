@@ -143,6 +143,7 @@ def settings_for(
     peak_width = prestress.narrowest
     if prestress.points:
         peak_width = min(peak_width, _nucleation_width(prestress))
+    # The step and the scatter of a grid study need the rest of the error.
     demand = Demand(
         error=SPACING_FRACTION * float(accuracy),
         levels=_levels(prestress),
@@ -209,6 +210,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
     pulse. The other is that the error of a measured quantity is at most the error of the demand.
     Each error is a constant times a power of dx, and is solved for dx.
     """
+    # The pre-stress varies over the first of these lengths, and leaf springs act over the second.
     nucleation_length = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
     # The nucleation causes this part of the errors of T_trans and L_trans. It is divided by dx.
     nucleation_error_per_dx = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
@@ -281,8 +283,9 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
     # The error of the speed of a front that runs into positive pre-stress.
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
-    stops_on_left = prestress.left < 0.0 and prestress.right == 0.0
-    if stops_on_left and distances:
+    # T_trans and slip velocity tend to a limit only if the left front stops in negative pre-stress
+    # and the pulse runs into pre-stress 0.
+    if prestress.left < 0.0 and prestress.right == 0.0 and distances:
         # The errors of T_trans and of slip velocity are these constants times dx/distance. The
         # first distance is the one on the left or, in a table, the shortest one.
         if not prestress.steps:

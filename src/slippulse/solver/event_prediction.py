@@ -107,6 +107,7 @@ def find_threshold_crossing(coefficients, slopes, degree, lower, upper):
         time = lower + (upper - lower) * k / STRESS_EVALUATIONS
         if evaluate_polynomial(coefficients, degree, time) > ROUNDING_TOLERANCE:
             return find_crossing(coefficients, degree, lower, time)
+    # Between these times the polynomial may still reach 0 for a moment, at its highest point.
     turn = find_turning_point(coefficients, slopes, degree, lower, upper)
     if turn < upper and evaluate_polynomial(coefficients, degree, turn) >= 0.0:
         return find_crossing(coefficients, degree, lower, turn)
@@ -355,7 +356,8 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
     """Predict when the blocks first..last-1 reach the kink of their law, from ``now`` on.
 
     Friction decreases with its argument, the slip or the slip rate, until it reaches the kink, and
-    is constant beyond. Without such a law (``law_kink`` is None) nothing is predicted.
+    is constant beyond. Row ``argument_row`` of the derivatives is this argument. Without such a law
+    (``law_kink`` is None) nothing is predicted.
 
     now, step_end : start and end of the search, counted from the start of the step
     top : order of the highest time derivative of slip
