@@ -84,7 +84,10 @@ def _block_variables(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[st
 
 
 def _sample_variables(runs: Sequence[Recorded]) -> dict[str, tuple]:
-    """Return the samples of all runs, along "point" and the dimensions "time" and "position"."""
+    """Return the samples of all runs, along "point" and the dimensions "time" and "position".
+
+    In a single run, the names of these two dimensions begin with "sample_".
+    """
     variables: dict[str, tuple] = {}
     for name, dimensions in DIMENSIONS.items():
         axes = [dimension.removeprefix("sample_") for dimension in dimensions]

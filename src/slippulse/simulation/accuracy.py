@@ -287,7 +287,8 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
     # and the pulse runs into pre-stress 0.
     if prestress.left < 0.0 and prestress.right == 0.0 and distances:
         # The errors of T_trans and of slip velocity are these constants times dx/distance. The
-        # first distance is the one on the left or, in a table, the shortest one.
+        # first distance is the one on the left or, in a table, the shortest one. In a pre-stress
+        # with steps, T_trans is not measured.
         if not prestress.steps:
             transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / transition_error)

@@ -237,7 +237,10 @@ def has_simultaneous_event(segments, prediction, medium, block, latest):
 
 @kernel_function()
 def list_due_releases(segments, prediction, latest, due):
-    """Write the blocks that are released until ``latest`` into ``due``, and return their number."""
+    """Write the blocks that are released until ``latest`` into ``due``, and return their number.
+
+    If there are more of them than ``due`` can hold, the others are released in the next step.
+    """
     count = 0
     for r in range(segments.count.n):
         for neighbour in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):

@@ -253,7 +253,7 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
 
     The result is the sum of dv da over the pairs of the block and its two neighbours: dv is the
     difference of the two velocities, and da the change of the difference of the two accelerations.
-    The caller multiplies it by 2 beta/dx, and doubles it on a mirrored lattice.
+    `take_event` multiplies it by 2 beta/dx, and doubles it on a mirrored lattice.
     """
     if medium.beta <= 0.0:
         return 0.0

@@ -53,6 +53,7 @@ class Lattice:
         # A caller can lower this number, to look at the lattice after fewer steps.
         self.max_call_steps = MAX_CALL_STEPS
         self.is_mirrored = scene.symmetric
+        # The damping ``beta`` is that of the scene, or its negative.
         self.medium = self._make_medium(beta)
         self.first_block = 0
         # A Taylor step of order n needs slip and its time derivatives 1 to n + 1. The other schemes
@@ -69,10 +70,7 @@ class Lattice:
         self._release_nucleation()
 
     def _make_medium(self, beta: float) -> arrays.Medium:
-        """Return the constants of the scene for the kernels.
-
-        beta : damping of the scene, or its negative
-        """
+        """Return the constants of the scene for the kernels; ``beta`` may have another sign."""
         scene, dx = self.scene, self.scene.dx
         return arrays.Medium(
             dx=dx,
