@@ -97,6 +97,14 @@ def test_a_strip_that_slides_as_one_sticks_after_two_shear_travel_times():
     assert run.slip[middle] == pytest.approx(2.0 * 0.8 / GAMMA, rel=0.01)
 
 
+def test_a_node_without_friction_and_load_does_not_stick_before_it_moves():
+    """At x > 0.5 in the nucleus, nothing drives slip until the first wave arrives."""
+    profile = Prestress.through(np.array([-1.5, -1.4, 0.4, 0.5]), np.array([-0.3, 0.9, 0.9, 0.0]))
+    run = simulate_layer(LayerScene("stress", 0.5, profile, 0.5, 4.0, cells=10))
+    has_stuck = np.isfinite(run.stick_time)
+    assert np.any(has_stuck) and np.all(run.stick_time[has_stuck] > run.release_time[has_stuck])
+
+
 def test_half_a_layer_and_a_full_one_agree():
     half = simulate_layer(PULSE)
     full = simulate_layer(replace(PULSE, coupling=1e-14))

@@ -308,16 +308,15 @@ def advance_node(elastic, fields, fault, i, dt, time):
             # The load is interpolated linearly in time between two steps.
             delay = excess / (excess - excess_before) if excess_before < 0.0 else 0.0
             fault.release_time[i] = time - delay * dt
-    # Without the half height of the row, the velocity would change by dt/h times the net force.
-    # Half a cell has half the mass, so that it changes twice as much.
+    # A force changes the velocity of a whole cell by dt/h times the force. Half a cell has half the
+    # mass, so that its velocity changes twice as much.
     velocity_before = fields.vx[0, i]
     velocity = velocity_before + 2.0 * elastic.dt_over_h * (load - strength)
     if velocity <= 0.0:
-        if np.isnan(fault.stick_time[i]):
+        # A node that is released without excess load has not moved, and does not stick.
+        if velocity_before > 0.0 and np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
-            fraction = 0.5
-            if velocity_before > 0.0:
-                fraction = velocity_before / (velocity_before - velocity)
+            fraction = velocity_before / (velocity_before - velocity)
             fault.stick_time[i] = time + (fraction - 0.5) * dt
         velocity = 0.0
         fault.sliding[i] = False
@@ -437,10 +436,10 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return the fields of a layer with elastic, earlier elastic, and total stresses.
+    """Return three groups of fields: with elastic stresses, with those one step before, with total.
 
-    The total stresses include damping, which is computed from the change of the elastic stresses
-    since the earlier ones. All three share the velocities, and without damping also the stresses.
+    The total stresses include damping, which is computed from the change of the elastic stresses in
+    a step. All three groups share the velocities, and without damping also the stresses.
     """
     if elastic.damping == 0.0:
         return DampedFields(elastic=fields, earlier=fields, total=fields)
