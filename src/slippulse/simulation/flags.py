@@ -126,9 +126,9 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
 def front_restarted(scene: Scene, solution: Solution) -> bool:
     """Return True if waves of a few blocks may have set a front in motion again.
 
-    This is possible if the damping is weak. Only tables of pre-stress are examined. For constant
-    levels under a stress boundary, `slippulse.measure` returns the transition state "stalled" if
-    the lattice held up the front.
+    This is possible if the damping is weak, and such a front has stood still for long. Only tables
+    of pre-stress are examined. For constant levels under a stress boundary, `slippulse.measure`
+    returns the transition state "stalled" if the lattice held up the front.
     """
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
         return False
