@@ -20,6 +20,11 @@ def test_energy_is_conserved_to_rounding(boundary, top):
     assert simulate_layer(scene).energy_residual < 1e-12
 
 
+def test_a_layer_in_which_nothing_moves_has_no_energy_error():
+    run = simulate_layer(replace(PULSE, prestress=Prestress(0.0, 0.0, peak=0.0), duration=1.0))
+    assert run.energy_residual == 0.0 and np.all(run.velocity == 0.0)
+
+
 def test_energy_is_conserved_with_friction_that_recovers_as_slip_slows_down():
     run = simulate_layer(replace(PULSE, rate=0.05, weakening=0.1, cells=10))
     assert run.energy_residual < 1e-12 and np.nanmax(run.slip) > 0.5

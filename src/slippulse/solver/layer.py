@@ -422,9 +422,11 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     # The energy balance holds only without damping, and if all columns are advanced.
-    residual = float(abs(energy - work_without_friction) / work_of_prestress)
-    if scene.beta > 0.0 or math.isfinite(scene.trail):
-        residual = math.nan
+    residual = math.nan
+    if scene.beta == 0.0 and math.isinf(scene.trail):
+        missing = abs(energy - work_without_friction)
+        # Without work nothing has moved.
+        residual = missing / work_of_prestress if work_of_prestress else 0.0
     return LayerRun(
         x=x[1:-1],
         slip=fault.slip[1:-1] / scene.slip_scale,
