@@ -354,11 +354,11 @@ def apply_event(medium, motion, segments, prediction, difference, event, step_en
         medium, motion, segments, prediction, first, last, now, step_end
     )
     return EventEffect(
-        is_finite,
-        first_changed,
-        last,
-        velocity_before,
-        lowest_stress,
-        loss_slope_change,
-        work_slope_change,
+        is_finite=is_finite,
+        first=first_changed,
+        last=last,
+        velocity_before=velocity_before,
+        lowest_stress=lowest_stress,
+        loss_slope_change=loss_slope_change,
+        work_slope_change=work_slope_change,
     )
