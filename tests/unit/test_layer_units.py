@@ -11,7 +11,9 @@ import slippulse as sp
 from slippulse.data.readable_units import readable_unit
 from slippulse.data.variables import VARIABLES as NAMES
 from slippulse.model.measured_columns import RECORD_FOR
+from slippulse.model.run import Run
 from slippulse.model.si_quantities import QUANTITIES, UNITS
+from slippulse.prediction import predicted_front, predicted_pulse, predicted_transition
 
 BLOCK = sp.Layer(
     0.02,
@@ -175,10 +177,14 @@ def test_attributes_and_measured_numbers_are_in_si_units(ruptured):
         plain["largest_velocity"] * scales.slip_velocity
     )
     assert not [name for name in numbers if name.startswith("trailing_edge")]
+    # The scene has a table of stresses, so that the stresses on the paths of fronts are measured.
+    for name in ("lowest_prestress_left", "lowest_prestress_right", "level_ahead_right"):
+        in_pascal = layer.convert_to_si(plain[name], "stress")
+        assert numbers[name] == pytest.approx(in_pascal, nan_ok=True)
 
 
 def test_every_number_with_a_unit_is_converted():
-    """Numbers have a unit if their description names one, or if they are measured and no ratio."""
+    """Measured and predicted numbers have a unit, unless they are ratios."""
     without = {"gamma", "friction_ratio", "max_step", "damping_ratio", "rate_strengthening"}
     named = {name for name, text in NAMES.items() if "in units of" in text or "position" in text}
     assert named - {"steps_and_bumps"} - without <= {*QUANTITIES}
@@ -186,6 +192,14 @@ def test_every_number_with_a_unit_is_converted():
     ratios |= {"lattice_noise", "sliding_at_once", "centre_velocity_share", "profile_change"}
     ratios |= {"largest_velocity_change", "energy_change"}
     assert {*RECORD_FOR} - ratios <= {*QUANTITIES}
+    run = Run(
+        "displacement", sp.Prestress(0.5, 0.5), 0.65, 0.05, 0.005, "total", {"law": "coulomb"}
+    )
+    crack = run._replace(boundary="stress", prestress=sp.Prestress(-0.5, 0.0), gamma=0.0)
+    for module in (predicted_front, predicted_pulse, predicted_transition):
+        for one in (run, crack):
+            columns = module.predictions([one], {"fraction": 0.95}).columns
+            assert {*columns} <= {*QUANTITIES}
 
 
 @pytest.mark.parametrize("factor", [2.0**-6, 0.3, 128.0])

@@ -25,14 +25,22 @@ from slippulse_paper.claims.paper_claims import (
     fields_of_claim,
     judge_claim,
 )
-from slippulse_paper.claims.pulse_claims import growth_signs
+from slippulse_paper.claims.pulse_claims import (
+    PERTURBED,
+    UNPERTURBED,
+    growth_signs,
+    perturbed_pulses_settle,
+    thin_layer,
+)
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import (
     front_arrest_position,
     judge_rise_with_prestress,
+    lattice_runs,
     transition_diverges,
     transition_time_underestimated,
 )
+from slippulse_paper.text.prose import fill
 
 YES, CAVEAT, DEPENDS, UNMET, NO, OPEN, NONE, HOLDS, WITH_CAVEAT, BEYOND = VERDICTS
 NAN = float("nan")
@@ -327,6 +335,20 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
 
 
+def test_lattice_runs_of_several_release_rules_and_damping_ratios_are_not_mixed():
+    lists = {"left": [0.2, 0.4], "release": ["total", "elastic"], "damping_ratio": [0.1, 0.2]}
+    finest = pd.MultiIndex.from_product(lists.values(), names=lists).to_frame(index=False)
+    runs = lattice_runs([finest, finest.assign(factor=2.0)])
+    choices = [(choice["release"], choice["damping_ratio"]) for choice, _ in runs]
+    assert choices == [("total", 0.1), ("total", 0.2), ("elastic", 0.1), ("elastic", 0.2)]
+    for choice, tables in runs:
+        for table in tables:
+            assert [*table["left"]] == [0.2, 0.4]
+            assert (table["release"] == choice["release"]).all()
+            assert (table["damping_ratio"] == choice["damping_ratio"]).all()
+    assert lattice_runs([finest.iloc[:0]]) == []
+
+
 @pytest.mark.parametrize("judge", [front_arrest_position, transition_diverges])
 def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
     columns = ["left", "width", "gamma", "release", "damping_ratio", "factor"]
@@ -343,6 +365,33 @@ def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
     claim = judge(flagged, "claim")
     assert claim.verdict() == NONE
     assert claim.sentence_values().get("holding", []) == []
+
+
+def test_a_pulse_without_a_steady_one_to_compare_with_is_undecided():
+    same = {"gamma": 0.65, "damping_ratio": 0.1, "exact_pulse_slip": 1.0, "paper_pulse_slip": 1.0}
+    steady = pd.DataFrame({"left": [0.3, 0.6], "pulse_slip": 1.0}).assign(**same)
+    perturbed = pd.DataFrame({"beyond": [0.3, 0.6, 0.9], "pulse_slip": [1.0, 1.1, 1.0]})
+    tables = {PERTURBED: [perturbed.assign(**same)] * 3, UNPERTURBED: [steady] * 3}
+    evidence = SimpleNamespace(
+        tolerance=lambda id: 0.01, lattices=lambda *simulations: tables[simulations]
+    )
+    judged = perturbed_pulses_settle(evidence, "perturbed_pulses_settle")
+    assert judged.decided == [True, False, None]
+    assert judged.further["largest deviation of the slip"] == pytest.approx(0.1)
+
+
+def test_a_layer_is_neither_thin_nor_thick_in_a_run_without_a_pulse():
+    runs = pd.DataFrame({"pulse_width": [10.0, 9.0, NAN], "front_speed_right": 1.1})
+    runs = runs.assign(gamma=0.65, damping_ratio=0.1)
+    evidence = SimpleNamespace(tolerance=lambda id: 0.1, finest=lambda simulation: runs)
+    judged = thin_layer(evidence, "thin_layer")
+    assert list(judged.decided) == [True, False, None]
+
+
+def test_a_fitted_exponent_has_no_sentence_without_runs(project):
+    claims = read_entries(project / "manuscript" / "claims.yaml", {})["claims"]
+    values = {"measured": None, "uncertainty": None, "deviation": None, "runs": 0}
+    assert fill(claims["transition_scaling_stress"]["why"], values).strip() == ""
 
 
 def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_zero():

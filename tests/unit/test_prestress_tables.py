@@ -303,6 +303,28 @@ def test_the_balance_is_the_nearest_one_if_bumps_or_steps_balance_the_pre_stress
     ) == pytest.approx(nearest)
 
 
+@pytest.mark.parametrize("far_level", [0.0, 0.3])
+def test_a_level_far_on_the_left_does_not_matter_if_a_nearer_part_balances(far_level):
+    """The step lies behind the balance, at about -6.3, where the rupture stops."""
+    balance = sp.theory.prestress_balance_position
+    nearest = balance(sp.Prestress(-0.5, 0.0))
+    assert balance(sp.Prestress(-0.5, 0.0, steps=((-20.0, far_level),))) == pytest.approx(nearest)
+    table = ((-20.0, far_level), (-20.0, -0.5), (0.0, -0.5), (0.0, 0.0))
+    assert balance(sp.Prestress(far_level, 0.0, points=table)) == pytest.approx(nearest)
+    # In front of the balance, the step prevents it.
+    with pytest.raises(ValueError, match=r"prestress\.left: .*never balanced"):
+        balance(sp.Prestress(-0.5, 0.0, steps=((-3.0, far_level),)))
+
+
+@pytest.mark.parametrize("points", [(), ((-50.0, -0.5), (0.0, -0.5), (0.0, 0.0), (9.0, 0.0))])
+def test_a_bump_can_nucleate_the_rupture_without_a_gaussian_and_without_a_table(points):
+    """The bump at x = 3 has the area 1.2 sqrt(2 pi), which the level -0.5 on the left balances."""
+    bumps = ((3.0, 1.2, 1.0),)
+    prestress = sp.Prestress(-0.5, 0.0, width=None, bumps=bumps, points=points)
+    balance = sp.theory.prestress_balance_position(prestress)
+    assert balance == pytest.approx(-2.4 * np.sqrt(2.0 * np.pi), rel=tol.ALGEBRA)
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_balance_of_random_bumps_is_that_of_a_running_sum(seed):
     rng = np.random.default_rng(seed)

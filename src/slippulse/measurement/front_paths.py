@@ -62,7 +62,8 @@ def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") ->
 
     An exact solution may not know all of the rupture after its limit time. The unknown part begins
     at the limit position, and spreads at the wave speed. It may not catch up with the front, which
-    is then known until the end. Otherwise the front is known until the last known release.
+    is then known until the end. Otherwise the front is known until the last known release. For a
+    trailing edge there is no such test: it is known until the limit time.
     """
     limit = limit_time(run)
     if np.isinf(limit) or edge == "stick_time":
@@ -77,7 +78,8 @@ def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") ->
         next_block = int(np.argmin(np.abs(np.asarray(run["x"]) - next_position)))
         is_unknown = np.isnan(run["slip"][next_block])
     else:
-        # The wave speed is 1.
+        # Slip at the end was not recorded. The block is unknown if waves from the limit position
+        # have reached it. Their speed is 1.
         wave_arrival = limit + abs(next_position - run.attrs["limit_position"])
         is_unknown = wave_arrival <= run.attrs["end_time"]
     return float(np.max(times)) if is_unknown else np.inf
@@ -131,8 +133,9 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     window : length of this part, as a fraction of the largest distance that the front reached
 
     If the front pauses within this part and is faster than the waves after the pause, only the path
-    after the pause is fitted. The line is NaN if there are fewer than MIN_FITTED_BLOCKS blocks, or
-    if the front is not known until the end, which may be so in an exact solution.
+    after the pause is fitted, because a line through the pause would be too slow. The line is NaN
+    if there are fewer than MIN_FITTED_BLOCKS blocks, or if the front is not known until the end,
+    which may be so in an exact solution.
     """
     times, distances = front_path(run, side)
     is_in_window = distances >= (1.0 - window) * np.max(distances, initial=0.0)

@@ -122,7 +122,8 @@ def _fit_of_rule(rows: pd.DataFrame) -> dict[str, Any]:
     best = fits.loc[fits["chi2"].idxmin()]
     names = ("chi2", "damping_ratio", "dx", "tau0", "gamma")
     fit: dict[str, Any] = {name: float(best[name]) for name in names}
-    # Three parameters are fitted: tau_0, gamma and the damping ratio.
+    # Three parameters are fitted: tau_0, gamma and the damping ratio. Readings with the weight 0
+    # are compared with the fit, but not fitted.
     fit["dof"] = rows.loc[rows["weight"] > 0.0, "reading"].nunique() - 3
     fit["regions"] = confidence_regions(fits)
     fit["pulls"] = {name: float(best[name]) for name in rows["reading"].unique()}

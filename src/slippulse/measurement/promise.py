@@ -43,13 +43,15 @@ MAX_REPORTED_MISSES = 5
 def covered_numbers(run: Mapping, fraction: float) -> set[str]:
     """Return the names of the measured numbers that a promise covers; none for a flagged run.
 
+    The error of some numbers falls fast enough with the block spacing only if the pre-stress is
+    high enough, so that the front on one side, or on both sides, is fast.
+
     run : the row of a run in the measured table
     fraction : under a stress boundary, the transition is measured when the left front has covered
         this fraction of the balance distance |x_minus|
     """
     if run["run_flags"]:
         return set()
-    # Some numbers are covered only if the front is fast on one side, or on both sides.
     fast = fast_sides(run)
     required_sides = REQUIRED_FAST_SIDES[run["boundary"]]
     names = {name for name, sides in required_sides.items() if fast.issuperset(sides)}
@@ -73,6 +75,8 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
     # "beyond" has the level beyond the outermost step on the right.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
         names.add("largest_velocity")
+    # The left front becomes slower and slower. The lattice holds it up close to its final position,
+    # and also if the damping is too weak to remove oscillations of the lattice.
     if run["boundary"] == "stress" and (
         run.get("transition_state") != "resolved"
         or fraction > MAX_COVERED_FRACTION
@@ -115,7 +119,8 @@ def judge_promises(
     study : the grid study, with one row for each number of each run
     measured : the measured table at the finest spacing
     promise : largest relative uncertainty; NaN for a user-defined spacing, which promises nothing
-    fraction : see `covered_numbers`
+    fraction : under a stress boundary, the transition is measured when the left front has covered
+        this fraction of the balance distance
 
     The new column ``promised`` has the promise, and ``kept`` is "true" or "false". If the promise
     does not cover a number, ``promised`` is NaN and ``kept`` is an empty text.

@@ -85,6 +85,8 @@ def _trailing_edge(run: AnyRun, peak_distance: float, speed: float) -> float:
 
     The four blocks behind the peak that stuck last are extrapolated to the end at the front speed.
     NaN if there are fewer of them.
+
+    peak_distance, speed : distance of the peak slip velocity from x = 0, and front speed
     """
     stick_times, distances = front_path(run, edge="stick_time")
     is_behind_peak = distances < peak_distance
@@ -189,7 +191,8 @@ def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
     is no such path.
     """
     fields = comoving(run, pulse)
-    # The path of the trailing edge begins at x = 0. Four blocks at its end are left out.
+    # The path of the trailing edge begins at x = 0. Four blocks at its end are left out, because
+    # the trailing edge is known only to within a few blocks, and they may still slide.
     path_length = pulse.front - pulse.width
     end = -pulse.width - 4.0 * run.attrs["dx"]
     is_in_last_third = (fields["xi"] < end) & (fields["xi"] > end - path_length / 3.0)

@@ -30,8 +30,8 @@ def classify_regime(
 ) -> dict[str, float | str]:
     """Return the regime of a run with samples (one of REGIMES), and the numbers that decide it.
 
-    - Arrested: see `_is_arrested`.
-    - Crack or pulse: see `is_pulse`.
+    - Arrested: at the end nearly nothing slides, or the last release was long before the end.
+    - Crack or pulse: in a pulse, the nucleation point (x = 0) is at rest at the end.
     - Two-way: the rupture runs on both sides of x = 0. It runs on a side if the front there is as
       fast as the waves over the last third of the run. If neither front is, the rupture runs on the
       sides on which a block slides at the end.

@@ -13,7 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import Prestress, prestress_from
+from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
@@ -52,7 +52,14 @@ def run_columns(columns: Container[str]) -> list[str]:
 def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | None]:
     """Return all numbers of a run by name, and its leading pulse.
 
-    settings : the settings under ``measure`` in the configuration (see config/README.md)
+    settings : the settings under ``measure`` in the configuration
+
+        - front_window: fraction of a front's path, at its end, over which its speed is measured
+        - fraction: under a stress boundary, the transition is measured when the left front has
+          covered this fraction of its way to the balance position
+        - trailing_times: times at which the position of the trailing edge is measured
+        - still: a block counts as at rest below this fraction of the largest slip velocity
+        - steady_tolerance: largest relative change of a steady pulse
 
     A number is left out if the data that it needs were not recorded. The pulse is None if slip
     velocity was not recorded.
@@ -102,8 +109,12 @@ def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
     beyond : level into which the right front runs: that of the outermost step on the right, or the
         right level if there is none
     profile, seed : labels of the profile, if the run has them
-    steps_and_bumps : see `shortened_table`; this column and the next ones only for a table
-    lowest_prestress_SIDE, level_ahead_SIDE : see `crossed_prestress`
+    steps_and_bumps : the steps, bumps and points as JSON, without the points of a long table; this
+        column and the next ones only if the pre-stress is a table of points
+    lowest_prestress_SIDE, level_ahead_SIDE : lowest pre-stress that the front has crossed, and the
+        constant one that it crossed last
+
+    window : the last part of a front's path, as a fraction of the path
     """
     profile = prestress_from(run.attrs)
     steps_on_right = [step for step in profile.steps if step[0] > 0.0]
@@ -120,7 +131,8 @@ def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
 def shortened_table(profile_as_json: str) -> str:
     """Return a recorded profile (JSON text), with a digest in place of the points of a long table.
 
-    A table is long if it has more than MAX_POINTS_IN_ROW points.
+    A table is long if it has more than MAX_POINTS_IN_ROW points. Different tables have different
+    digests, so that their profiles can still be told apart.
     """
     parts = json.loads(profile_as_json)
     point_count = len(parts["points"])
@@ -159,7 +171,8 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
     stress boundary, the paper defines it for a negative level on the left and the level 0 on the
     right, without steps.
 
-    fraction : see `transition_stress`
+    fraction : under a stress boundary, the transition is the time at which the left front has
+        covered this fraction of its way to the balance position
     """
     left, right = run.attrs["left"], run.attrs["right"]
     profile = prestress_from(run.attrs)
@@ -237,36 +250,29 @@ def sliding_at_once(run: AnyRun) -> float:
     return float(np.max(released_count - stuck_count))
 
 
-def _entry_of_far_field(profile: Prestress) -> tuple[float, float]:
-    """Return where the far field on the right begins, and a position one Gaussian width beyond.
-
-    The far field begins beyond the Gaussian, and beyond all steps and points of the pre-stress.
-    """
-    # If there is no Gaussian, its width is None. The unit of length takes its place.
-    width = profile.width or 1.0
-    distances = [abs(position) for position, _ in (*profile.steps, *profile.points)]
-    start = max([GAUSSIAN_END_IN_WIDTHS * width, *distances])
-    return start, start + width
-
-
 def far_field(run: AnyRun) -> dict[str, float]:
     """Measure how the pulse on the right changes from an early time to the end of a run.
 
-    The early time is the sampled time at two thirds of the run. Only the far field is used, where
-    the pre-stress is constant.
+    The early time is the sampled time at two thirds of the run. Only the far field is used, which
+    lies to the right of all Gaussians, steps and points, so that the pre-stress is constant.
 
     profile_change : largest change of slip velocity in the frame that moves at the wave speed,
         divided by the early peak velocity
     energy_change : relative change of the sum of kinetic and strain energy
-    strain_left : strain that is left where the pulse entered the far field: the largest strain
-        there at the end of the run, divided by the largest strain anywhere in the far field at that
-        time
+    strain_left : strain that is left where the pulse entered the far field, in its first Gaussian
+        width: the largest strain there at the end of the run, divided by the largest strain
+        anywhere in the far field at that time
 
     All are NaN if nothing slid in the far field at the early time. profile_change is NaN if the
     sampled far field is shorter than the distance that waves run between the two times.
     strain_left is NaN if no position near the entry is sampled, or if the final strain is 0.
     """
-    far_start, entry_end = _entry_of_far_field(prestress_from(run.attrs))
+    profile = prestress_from(run.attrs)
+    # If there is no Gaussian, its width is None. The unit of length takes its place.
+    width = profile.width or 1.0
+    ends = [centre + GAUSSIAN_END_IN_WIDTHS * bump for centre, _, bump in profile.bumps]
+    ends += [position for position, _ in (*profile.steps, *profile.points)]
+    far_start = max([GAUSSIAN_END_IN_WIDTHS * width, *ends])
     times = np.asarray(run["sample_time"])
     # Sampled positions may be in any order, and may repeat.
     x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)
@@ -294,7 +300,7 @@ def far_field(run: AnyRun) -> dict[str, float]:
     changes = np.abs(final_velocity - velocity[early][is_compared])
     largest_change = np.max(changes) if changes.size else np.nan
     final_strain = np.abs(strain[-1])
-    entry_strain, largest_strain = final_strain[far_x <= entry_end], np.max(final_strain)
+    entry_strain, largest_strain = final_strain[far_x <= far_start + width], np.max(final_strain)
     strain_left = np.nan
     if entry_strain.size and largest_strain > 0.0:
         strain_left = float(np.max(entry_strain) / largest_strain)

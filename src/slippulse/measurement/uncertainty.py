@@ -37,12 +37,12 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     factors : c_1 and c_2
 
     If no order p within ORDER_RANGE fits, the value is not extrapolated. The uncertainty is then
-    (largest value - smallest value)/(c_2^p - 1) with the lowest p of this range. It is NaN if a
-    value is missing.
+    (largest value - smallest value)/(c_2^p - 1) with the lowest p of this range, which gives the
+    largest uncertainty. It is NaN if a value is missing.
     """
     finest, middle, coarsest = (float(value) for value in values)
     if not all(map(math.isfinite, (finest, middle, coarsest))):
-        return GridStudy(finest, finest, np.nan, np.nan)
+        return GridStudy(finest, extrapolated=finest, observed_order=np.nan, uncertainty=np.nan)
     spread = max(finest, middle, coarsest) - min(finest, middle, coarsest)
     middle_change, coarsest_change = middle - finest, coarsest - finest
 
@@ -55,7 +55,8 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     are_equal = spread <= EQUALITY_TOLERANCE * max(1.0, abs(finest))
     is_monotonic = middle_change * coarsest_change > 0.0
     if are_equal or not is_monotonic or mismatch(lowest) * mismatch(highest) > 0.0:
-        return GridStudy(finest, finest, np.nan, spread / (factors[1] ** lowest - 1.0))
+        uncertainty = spread / (factors[1] ** lowest - 1.0)
+        return GridStudy(finest, finest, observed_order=np.nan, uncertainty=uncertainty)
     order = float(root_between(mismatch, lowest, highest))
     extrapolated = finest - middle_change / (factors[0] ** order - 1.0)
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
@@ -82,7 +83,8 @@ def grid_tables(
     factors : the second and third spacing divided by the finest
     keys : columns that identify a run or describe its computation
 
-    The result has one row for each run ("point") and quantity.
+    The result has one row for each run and measured number (the columns ``point`` and
+    ``quantity``), with the keys of the run and the fields of `GridStudy`.
     """
     finest = tables[0]
     names = studied_columns(finest, keys)

@@ -91,7 +91,8 @@ def prestress_balance_position(prestress: Prestress) -> float:
     Parameters
     ----------
     prestress : Prestress
-        Its level must be 0 far on the right and negative far on the left.
+        Its level must be 0 far on the right. If no part of the profile balances the nucleation, the
+        level must be negative far on the left.
 
     Returns
     -------
@@ -100,9 +101,10 @@ def prestress_balance_position(prestress: Prestress) -> float:
     Raises
     ------
     ValueError
-        If the level far on the right is not 0, or the level far on the left is not negative.
+        If the level far on the right is not 0, or if there is no balance because the level far on
+        the left is not negative.
     ArithmeticError
-        If no such position exists, or rounding prevents its computation.
+        If no such position exists for another reason, or rounding prevents its computation.
 
     Notes
     -----
@@ -125,13 +127,12 @@ def _balance_position(prestress: Prestress) -> float:
     """
     # On the right the level is 0, so that integrals to infinity end at this distance.
     distance = _distance_of_levels(prestress)
-    left, right = prestress.level(np.array([-distance, distance])).tolist()
+    right = float(prestress.level(distance))
     allowed = "0, since otherwise the balance integral is not finite"
     check_that(right == 0.0, "prestress.right", right, allowed)
-    allowed = "< 0, since otherwise the pre-stress is never balanced"
-    check_that(left < 0.0, "prestress.left", left, allowed)
     if prestress.points or prestress.steps or prestress.bumps:
         return _nearest_balance(prestress, distance)
+    _check_far_left_level(prestress.left)
     # The balance lies between these positions. The lower one is moved to the left until the
     # integral from there is not positive.
     lower, upper = -distance, 0.0
@@ -140,6 +141,12 @@ def _balance_position(prestress: Prestress) -> float:
     if not integral(prestress, lower, distance) <= 0.0 <= integral(prestress, upper, distance):
         raise ArithmeticError("no balance position at x < 0 can be computed for this pre-stress")
     return root_to_last_bit(lambda x: integral(prestress, x, distance), lower, upper)
+
+
+def _check_far_left_level(level: float) -> None:
+    """Raise ValueError unless the level far on the left can still balance the pre-stress."""
+    allowed = "< 0, since otherwise the pre-stress is never balanced"
+    check_that(level < 0.0, "prestress.left", level, allowed)
 
 
 def _distance_of_levels(prestress: Prestress) -> float:
@@ -164,12 +171,7 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
     distance : distance from x = 0 beyond which the pre-stress equals its level on either side. On
         the right the level is 0, so that an integral to infinity ends there.
     """
-    nucleation = 0.0
-    if prestress.width is None:
-        # Without a Gaussian at x = 0, the rupture starts at the points that reach 1 or, if none
-        # does, at the largest value. This is the leftmost of these points.
-        x, tau = prestress.point_arrays
-        nucleation = float(x[tau >= min(1.0, float(tau.max()))][0])
+    nucleation = _leftmost_nucleation(prestress)
     integral_from_right_end = integral(prestress, nucleation, distance)
     if not integral_from_right_end >= 0.0:
         raise ArithmeticError("no balance position at x < 0 can be computed for this pre-stress")
@@ -178,8 +180,10 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
         integral_from = partial(_integral_from, prestress, part, integral_from_right_end)
         left_end = part.left
         if left_end == -math.inf:
-            # The last part is infinite. A finite length of it, which is doubled until the integral
-            # is negative, is enough.
+            # Nothing has balanced the pre-stress so far, so that only this last part, which is
+            # infinite, can. A finite length of it is enough, which is doubled until the integral is
+            # negative.
+            _check_far_left_level(part.interval.left_value)
             left_end = part.right - 1.0
             while integral_from(left_end) >= 0.0:
                 left_end = part.right - 2.0 * (part.right - left_end)
@@ -189,6 +193,25 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
         # The left end of this part is the right end of the next one.
         integral_from_right_end = integral_from_left_end
     return root_to_last_bit(integral_from, left_end, part.right)
+
+
+def _leftmost_nucleation(prestress: Prestress) -> float:
+    """Return the leftmost position at which the rupture starts.
+
+    If there is a Gaussian at x = 0, the rupture starts there. Otherwise it starts at the points and
+    at the centres of bumps where the pre-stress reaches 1 or, if it reaches 1 nowhere, where it is
+    largest. If there are no points and no bumps, 0 is returned.
+    """
+    if prestress.width is not None or not (prestress.points or prestress.bumps):
+        return 0.0
+    positions = np.array([centre for centre, _, _ in prestress.bumps])
+    values = prestress(positions)
+    if prestress.points:
+        # At a jump the table has two values, so that the bumps are added to each of them.
+        x, tau = prestress.point_arrays
+        sum_of_bumps = prestress(x) - prestress.level(x)
+        positions, values = np.append(positions, x), np.append(values, tau + sum_of_bumps)
+    return float(positions[values >= min(1.0, values.max())].min())
 
 
 class _Part(NamedTuple):
@@ -216,7 +239,7 @@ def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
     """Yield parts of the intervals to the left of ``start``, from right to left.
 
     Intervals are divided where the background changes its sign, and into short parts near
-    Gaussians.
+    Gaussians. The pre-stress then changes its sign at most once within each part.
     """
     positions: list[float] = []
     for centre, width in prestress.gaussians:

@@ -80,6 +80,8 @@ class Bound(NamedTuple):
         This bound is that of one job, and ``chunks`` equal jobs make the sweep. Each job has the
         limits JOB_LIMITS. If there are many jobs, their limits are lower, so that all jobs together
         stay within SWEEP_LIMIT_IN_JOBS times the limits of one.
+
+        remedy : advice to the user, with which the description ends
         """
         fraction_of_limits = min(1.0, SWEEP_LIMIT_IN_JOBS / chunks)
         where = f" in each of {chunks} chunks" if chunks > 1 else ""
@@ -163,7 +165,7 @@ def _bound_scene_reach(scene: Scene) -> float:
     )
     # The width is None if there is no Gaussian at x = 0.
     end_of_peak = GAUSSIAN_END_IN_WIDTHS * (profile.width or 0.0)
-    # The sum is at least as large as each of these distances.
+    # The bound may be too large: the sum is at least as large as each of these distances.
     start = max(end_of_bumps, profile.nucleation_reach) + end_of_peak
     return bound_front_reach(profile, start, scene.duration, partial(_bound_speeds, scene))
 
@@ -173,7 +175,8 @@ def _bound_speeds(scene: Scene, levels: np.ndarray) -> np.ndarray:
 
     The bounds are larger than the exact speeds at any damping and under both release rules.
     """
-    # If the pre-stress is not a table, the bound at the highest level is used for all levels.
+    # A table can have a few high values, so that each level has its own bound. Other profiles have
+    # few levels, and the bound at the highest one is used for all.
     level = np.clip(levels if scene.prestress.points else np.max(levels), 0.0, MAX_LEVEL)
     # Without damping, the front speed is 1/sqrt(1 - tau^2).
     speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))
@@ -199,6 +202,7 @@ def bound_cost(scene: Scene, samples: Samples | None = None) -> Bound:
     if samples is not None:
         sample_bytes = BYTES_PER_SAMPLE * samples.times.size * samples.positions.size
     table_bytes = BYTES_PER_TABLE_POINT * len(scene.prestress.points)
+    # Numbers that the solver keeps for each block.
     solver_numbers = scene.order + OTHER_SOLVER_NUMBERS
     return Bound(
         runs=1,

@@ -456,8 +456,10 @@ def prestress_from(attributes: Mapping) -> Prestress:
 
     Raises KeyError if an attribute is missing, and ValueError if its value is not allowed.
     """
-    left, right, width, peak = (attributes[name] for name in NUMBER_RANGES)
+    left, right = attributes["left"], attributes["right"]
+    width, peak = attributes["width"], attributes["peak"]
     parts_as_json = attributes["steps_and_bumps"]
+    # A data file has NaN if there is no Gaussian at x = 0.
     if isinstance(width, float) and math.isnan(width):
         width = None
     arguments = (parts_as_json, left, right, width, peak)

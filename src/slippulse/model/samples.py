@@ -39,6 +39,7 @@ class Samples:
     positions: np.ndarray
 
     def __post_init__(self) -> None:
+        # Copies are made, so that a later change of the caller's arrays has no effect.
         for name in ("times", "positions"):
             copy = as_numbers(f"samples.{name}", getattr(self, name)).copy()
             copy.setflags(write=False)

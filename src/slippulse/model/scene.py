@@ -227,6 +227,7 @@ class Scene:
         check_that(is_resolved, "prestress.width", peak_width, allowed)
         # The lattice has all bumps and all points that reach 1 from the start, which needs memory.
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
+        # The exact solution (scheme "continuum") uses the points of a table without a lattice.
         if self.prestress.points and self.scheme != "continuum":
             check_resolved(self.prestress, self.dx)
             reach = self.prestress.nucleation_reach
@@ -424,7 +425,10 @@ REQUIRED_RESULTS = ("end_time", "releases", "re_releases", "half_lattice_used", 
 
 
 def check_run_attributes(attributes: Mapping) -> None:
-    """Raise ValueError if attributes of a run are missing or not allowed."""
+    """Raise ValueError if attributes of a run are missing or not allowed.
+
+    They are the parameters of the scene, and the results that measurements and figures need.
+    """
     Scene.from_attributes(attributes)
     for name in REQUIRED_RESULTS:
         value = attributes.get(name)

@@ -46,7 +46,7 @@ _NAMES_BY_QUANTITY = {
         front_intercept_left transition_length balance_distance last_release_distance
         last_release_length paper_transition_length exact_transition_length pulse_front pulse_width
         pulse_half_width slip_length_background slip_length_nucleation exact_pulse_width
-        exact_balance_distance
+        exact_balance_distance exact_half_width paper_pulse_width
     """,
     "time": """
         duration end_time first_stick_time limit_time transition_time last_release_time
@@ -56,14 +56,19 @@ _NAMES_BY_QUANTITY = {
     "speed": """
         front_speed_right front_speed_left front_speed_error_right front_speed_error_left
         late_front_speed_left late_front_speed_right exact_front_speed_left exact_front_speed_right
+        paper_front_speed_left paper_front_speed_right lattice_front_speed_left
+        lattice_front_speed_right
     """,
-    "slip": "pulse_slip exact_pulse_slip exact_left_pulse_slip",
+    "slip": "pulse_slip paper_pulse_slip exact_pulse_slip exact_left_pulse_slip",
     "slip_velocity": """
         min_velocity largest_velocity pulse_peak_velocity exact_largest_velocity
-        exact_pulse_peak_velocity exact_left_pulse_peak_velocity
+        paper_pulse_peak_velocity exact_pulse_peak_velocity exact_left_pulse_peak_velocity
     """,
-    "slip_acceleration": "pulse_acceleration exact_pulse_acceleration",
-    "stress": "left right peak beyond min_stuck_stress",
+    "slip_acceleration": "pulse_acceleration paper_pulse_acceleration exact_pulse_acceleration",
+    "stress": """
+        left right peak beyond min_stuck_stress level_ahead_left level_ahead_right
+        lowest_prestress_left lowest_prestress_right
+    """,
     "stress_difference": "pulse_stress_drop",
     "damping": "beta",
     "energy": """
@@ -87,9 +92,13 @@ Converter = Callable[[Any, str], Any]
 
 
 def converted_run(run: Any, convert: Converter) -> Any:
-    """Return the Dataset of a run with all variables and attributes converted."""
+    """Return the Dataset of a run with all variables and attributes converted.
+
+    convert : converts a number or an array, given the name of its quantity
+    """
     variables = {}
     for name, variable in run.variables.items():
+        # The second value is a description.
         quantity, _ = VARIABLES[name]
         variables[name] = (variable.dims, convert(variable.values, quantity), variable.attrs)
     coordinates = {name: variables.pop(name) for name in run.coords}
@@ -102,7 +111,10 @@ def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[st
     """Return all numbers by name; those that have a unit are converted.
 
     The parts of the pre-stress, which are recorded as a JSON text, are converted, too.
+
+    convert : converts a number, given the name of its quantity
     """
+    # QUANTITIES has the name of the quantity, such as "length", of each number that has a unit.
     converted = dict(numbers)
     for name in QUANTITIES.keys() & converted.keys():
         if converted[name] is not None:
@@ -113,7 +125,10 @@ def converted_numbers(numbers: Mapping[str, Any], convert: Converter) -> dict[st
 
 
 def _converted_parts(text: str, convert: Converter) -> str:
-    """Convert the steps, bumps and points of a pre-stress, which are given and returned as JSON."""
+    """Convert the steps, bumps and points of a pre-stress, which are given and returned as JSON.
+
+    convert : converts a number, given the name of its quantity
+    """
     parts = json.loads(text)
     for part, rows in parts.items():
         # In a row of measured numbers, a digest (text) may take the place of many points.

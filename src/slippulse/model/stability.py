@@ -112,6 +112,7 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     derivatives = _mode_derivatives(
         order, stiffness=s + gamma_dx2, damping=damping_ratio * s + drag
     )
+    # Some orders amplify undamped modes slightly at every step size. This weak growth is allowed.
     max_amplification = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
     # The shortest step that is tried. It is not longer than the times in which the fastest mode
     # changes, 1/damping_ratio, 1/drag and 1/sqrt(gamma_dx2). If even this step is unstable, the

@@ -104,7 +104,10 @@ def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -
 
 
 def _read_csv(content: bytes, x: str | None, prestress: str | None) -> StressTable:
-    """Read the two columns of a CSV file, given as bytes."""
+    """Read the two columns of a CSV file, given as bytes.
+
+    x, prestress : names of the columns; if None, they are found by their usual names
+    """
     header, *body = _csv_rows(content)
     names = header.cells
     x_column = _find_column(names, "x", x, POSITION_NAMES)
@@ -229,7 +232,10 @@ def _check_rows(rows: Sequence[int], x: Sequence[float]) -> None:
 
 
 def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> StressTable:
-    """Read two one-dimensional variables of a netCDF file, given as bytes."""
+    """Read two one-dimensional variables of a netCDF file, given as bytes.
+
+    x, prestress : names of the two variables; if None, they are found by their usual names
+    """
     from io import BytesIO
 
     import xarray as xr

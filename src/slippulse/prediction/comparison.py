@@ -47,7 +47,7 @@ def measured_table(sweep: xr.Dataset, settings: Mapping) -> pd.DataFrame:
 def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
     """Return the measured numbers of a run by name, and numbers that compare the run with theory.
 
-    settings : the section ``measure`` of the configuration, see `measure_run`
+    settings : the settings of `measure_run`, which the configuration has under ``measure``
     """
     row, pulse = measure_run(run, settings)
     if pulse is not None:
@@ -76,12 +76,16 @@ def _paper_transition(run: AnyRun) -> tuple[float, float]:
 
 
 def pulse_state(run: AnyRun, pulse: LeadingPulse) -> str:
-    """Return the state of the leading pulse, by the names that config/README.md explains.
+    """Return the state of the leading pulse, which compares it with the exact steady pulse.
 
-    A steady pulse leaves uniform slip behind, and has the width of the exact steady pulse
-    (`theory.steady_pulse`). The state is "none" if there is no pulse to compare. It is also "none"
-    if no exact pulse is known: under a stress boundary, with another friction law than "coulomb",
-    or with an extra term of the equation.
+    - "several": there is more than one pulse on the right.
+    - "stopped": the right front has stopped.
+    - "steady": the pulse leaves uniform slip behind, and has the width of `theory.steady_pulse`.
+    - "unsteady": it does not, or its front is slower than the waves.
+    - "thick_front": damping acts in a layer at the front that is not thin compared with the pulse.
+    - "none": there is no pulse, or no exact steady pulse is known. None is known under a stress
+      boundary, with another friction law than "coulomb", with an extra term of the equation, and if
+      the pre-stress at the front is not between 0 and 1.
     """
     if run.attrs["boundary"] != "displacement":
         return "none"
@@ -111,14 +115,16 @@ def _prestress_at_front(run: AnyRun) -> float:
 def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> str:
     """Return "steady", "unsteady" or "thick_front" for a pulse with a front faster than the waves.
 
-    The pulse is compared with the steady one at the pre-stress tau and the measured speed.
+    The pulse is compared with the steady one at the pre-stress tau and the measured speed. These
+    cannot be compared ("thick_front") if the layer at the front in which damping acts is too thick,
+    since the theory of the front speed neglects leaf springs within this layer.
     """
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
-    # The layer at the front in which damping matters.
     layer_thickness = beta * pulse.speed / (pulse.speed**2 - 1.0)
     if layer_thickness > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
         return "thick_front"
+    # The measured width may also differ by the width of the front, which is not sharp.
     front_width = layer_thickness + FRONT_WIDTH_IN_BLOCKS * dx
     largest_difference = MAX_RELATIVE_CHANGE * steady.width + front_width
     has_other_width = abs(pulse.width - steady.width) > largest_difference

@@ -103,13 +103,14 @@ def _measure_run(run: xr.Dataset) -> dict[str, Any]:
     check_that(is_run, "run", run, "a Dataset that simulate returned")
     layer = layer_of(run.attrs)
     if layer is None:
-        return _measure_in_model_units(run, {})
+        return _measure_in_model_units(run)
     # The names of the numbers ``trailing_edge_*`` contain times, which would be those of the model.
-    numbers = _measure_in_model_units(layer.from_si(run), {"trailing_times": []})
+    # So these numbers are left out.
+    numbers = _measure_in_model_units(layer.from_si(run), trailing_times=[])
     return layer.numbers_to_si(numbers)
 
 
-def _measure_in_model_units(run: xr.Dataset, settings: dict[str, Any]) -> dict[str, Any]:
+def _measure_in_model_units(run: xr.Dataset, **settings: Any) -> dict[str, Any]:
     """Return the measured numbers of a run that is in the units of the model.
 
     settings : settings that differ from MEASURE_SETTINGS

@@ -24,7 +24,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
     The columns are paper_front_speed_SIDE, exact_front_speed_SIDE (without leaf springs) and
     lattice_front_speed_SIDE (with the leaf springs of a lattice of spacing dx), where SIDE is left
-    or right.
+    or right. The settings, which other predictions need, are not used.
     """
     # Without damping the exact speed is that of the paper's formula.
     undamped = [run._replace(beta=0.0) for run in runs]
@@ -73,8 +73,8 @@ def _lattice_speed(
     The result is NaN
 
     - without leaf springs (gamma = 0);
-    - with damping, if gamma dx^2 is below MIN_GAMMA_DX2. Without damping the speed has a closed
-      form, and is always computed;
+    - with damping, if gamma dx^2 is below MIN_GAMMA_DX2, where leaf springs hardly matter and the
+      computation is slow. Without damping the speed has a closed form, and is always computed;
     - if leaf springs are so strong that no front outruns the waves.
     """
     if gamma == 0.0 or (damping_ratio > 0.0 and gamma * dx**2 < MIN_GAMMA_DX2):

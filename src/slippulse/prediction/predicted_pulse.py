@@ -16,8 +16,10 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     """Return numbers of the steady pulses of each run, one row for each run.
 
     For the pulse on the right the columns are paper_pulse_NAME (the paper's pulse, without damping)
-    and exact_pulse_NAME, and for the pulse on the left exact_left_pulse_NAME. The numbers are NaN
-    if there is no pulse: without leaf springs, or if the front is not faster than the waves.
+    and exact_pulse_NAME, and for the pulse on the left exact_left_pulse_NAME. The names are width,
+    slip, peak_velocity and acceleration, on the left only slip and peak_velocity. They are NaN
+    if there is no pulse: without leaf springs, or if the front is not faster than the waves. The
+    settings, which other predictions need, are not used.
     """
     left_speeds = exact_front_speeds(runs, "left").tolist()
     right_speeds = exact_front_speeds(runs, "right").tolist()

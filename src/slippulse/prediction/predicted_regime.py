@@ -24,7 +24,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
-    still_fraction is explained in `final_regime`.
+    still_fraction : a point is at rest below this fraction of the largest slip velocity
     """
     profile = run.prestress
     if profile.bumps or profile.points:
@@ -74,40 +74,36 @@ def final_regime(
 
     left and right are the levels. A rupture is a pulse if the slip velocity at the nucleation point
     is less than ``still_fraction`` times the largest slip velocity.
-
-    With leaf springs (gamma > 0), a front into a negative level stops. A front into a positive
-    level remains faster than the waves. Behind it the nucleation point sticks
-    (`theory.trailing_edge`), and the pulse becomes steady within a finite distance. A pulse into
-    the level 0 becomes narrower in proportion to 1/t, and decays. If one level is 0 and the other
-    one is not negative, the regime is UNDECIDED.
-
-    Without leaf springs, du/dt at a point is half the integral of the pre-stress tau between the
-    two positions where the characteristics through this point enter the rupture. If neither level
-    is negative, du/dt never falls, and the rupture is a crack. If both levels are negative, the
-    rupture is arrested when the integral of tau over it is 0, which happens at a finite size.
-
-    There remains a level -n < 0 on one side and a level p >= 0 on the other. If p is 0, a pulse
-    runs there that keeps its shape. If p > 0, the front into -n is moved by waves that started on
-    the front into p (`theory.arrest`). A wave that started at a distance e from the nucleation
-    point moves it to the distance (p/n) e, so that the integral of tau between the two positions is
-    0. So the front into -n never stops. Its speed tends to 1/(1 + (n/p)(1 + 1/v)), where v is the
-    speed of the front into p, and is below 1. The slip velocity at the nucleation point, divided by
-    the largest one in the rupture, tends to r/(1 + 1/v + 2 r), where r = p/n. The rupture is a
-    pulse if this is less than ``still_fraction``, that is, if r is below `largest_pulse_ratio`.
     """
     low, high = sorted((left, right))
+    # Both fronts run into a negative level. With leaf springs (gamma > 0), such a front stops.
+    # Without them, the rupture stops when the integral of the pre-stress over it is 0.
     if high < 0.0:
         return "arrested"
     if gamma > 0.0:
+        # A front into a positive level remains faster than the waves. Behind it the nucleation
+        # point sticks, and the pulse becomes steady within a finite distance. A pulse into the
+        # level 0 becomes narrower in proportion to 1/t, and decays.
         if low > 0.0:
             return "pulses, two-way"
         if low == 0.0:
             return UNDECIDED
         return "pulse, one-way, steady" if high > 0.0 else "pulse, one-way, decaying"
+    # Without leaf springs, du/dt at a point is half the integral of the pre-stress tau between the
+    # two positions where the characteristics through this point enter the rupture. If neither level
+    # is negative, du/dt therefore never falls.
     if low >= 0.0:
         return "crack-like, two-way"
+    # A pulse into the level 0 keeps its shape.
     if high == 0.0:
         return "pulse, one-way, steady"
+    # There remains a level -n < 0 on one side and a level p > 0 on the other. The front into -n is
+    # moved by waves that started on the front into p. A wave that started at a distance e from the
+    # nucleation point moves it to the distance (p/n) e, so that the integral of tau between the two
+    # positions is 0. So the front into -n never stops. Its speed tends to
+    # 1/(1 + (n/p)(1 + 1/v)) < 1, where v is the speed of the front into p. The slip velocity at the
+    # nucleation point, divided by the largest one, tends to r/(1 + 1/v + 2 r), where r = p/n. For a
+    # pulse this must be less than still_fraction, so that r is below `largest_pulse_ratio`.
     largest_ratio = float(
         largest_pulse_ratio(
             level=high, damping_ratio=damping_ratio, release=release, still_fraction=still_fraction
@@ -122,8 +118,9 @@ def largest_pulse_ratio(
 ) -> np.ndarray:
     """Return the ratio p/n of levels below which a rupture without leaf springs becomes a pulse.
 
-    The pre-stress level is p > 0 on one side, and -n < 0 on the other. The ratio follows from the
-    condition in the last paragraph of `final_regime`.
+    The pre-stress level is p > 0 on one side, and -n < 0 on the other. With r = p/n and the speed v
+    of the front into p, the slip velocity at the nucleation point tends to r/(1 + 1/v + 2 r) times
+    the largest one. A pulse needs less than ``still_fraction``.
 
     level : the positive level p, a number or an array
     """

@@ -34,7 +34,11 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 
 
 def _row(run: Run, fraction: float) -> dict[str, float]:
-    """Return the row of `predictions` for one run."""
+    """Return the row of `predictions` for one run.
+
+    fraction : under a stress boundary, the transition is the time at which the left front has
+        covered this fraction of its way to the balance position
+    """
     if run.boundary == "displacement":
         return _row_under_displacement(run)
     return _row_under_stress(run, fraction)
@@ -66,6 +70,8 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     pre-stress that is negative far to the left and 0 far to the right. Except for the balance
     distance, they also need a single Gaussian between these levels. Without it, time and length of
     the transition are NaN. Other numbers that cannot be computed are left out.
+
+    fraction : the transition is when the left front has covered this fraction of its way
     """
     row = {**NO_TRANSITION}
     profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
@@ -103,6 +109,8 @@ def _arrest(left: float, damping_ratio: float, release: str, fraction: float) ->
 
     The pre-stress is a Gaussian of width 1 between the level left and 0. The numbers are named as
     the columns of `predictions`.
+
+    fraction : the transition is when the left front has covered this fraction of its way
     """
     crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
     # Very close to the balance position, the left front is moved by waves that started where the
@@ -128,11 +136,13 @@ def _half_width(crack: ArrestingCrack) -> float:
         """Return the slip velocity of the wave that started at x, minus half the peak velocity."""
         return 0.5 * integral(crack.prestress, x, crack.end) - 0.5 * crack.peak_velocity
 
-    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0.
+    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0. To the
+    # right of crack.end it is 0 everywhere.
     start_of_peak = crack.slow_start
     ahead = root_between(excess_over_half_peak, start_of_peak, crack.end, xtol=1e-12)
     rear = root_between(excess_over_half_peak, crack.balance_position, start_of_peak, xtol=1e-12)
-    # x - t does not change along a wave. The width is the difference of the two values.
+    # x - t does not change along a wave, which starts when a front arrives at x. The width is the
+    # difference of the two values.
     ahead_minus_time = ahead - float(crack.fronts.arrival(ahead))
     rear_minus_time = rear - crack.time_at(rear)
     return float(ahead_minus_time - rear_minus_time)

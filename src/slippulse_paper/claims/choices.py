@@ -102,10 +102,8 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
 
     It is the smallest change of this choice from a combination at which the claim holds to one at
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
-    single change with the largest effect.
+    single change with the largest effect. Effects on exact solutions rank above those on lattices.
     """
-    # Changes between exact solutions rank above those between lattices, and larger changes above
-    # smaller ones.
     rank = attrgetter("exact", "size")
     ranked = sorted(changes(combinations), key=rank)
     # The dictionary keeps the last change of each choice, which ranks highest.
@@ -165,12 +163,11 @@ class OverChoices(Claim):
 
         holding : deviations at the combinations at which the claim holds
         failing : deviations at the combinations at which it fails
-        last : deviations of lattice runs, which are measured at their last release
+        last : deviations at the combinations at which the transition ends at the last release
         changes : the changes of choices on which the verdict depends
-        choice_names : names of the choices in sentences
-        settings : the choices, in words, of the first combination whose verdict has a caveat, or of
-            the first combination if none has
-        unsure : the template values of the result at this combination
+        choice_names : words for each choice
+        settings, unsure : the choices in words, and the template values of the result, at the first
+            combination whose verdict has a caveat, or at the first combination if none has
         """
         holding, failing = [], []
         at_last_release, with_caveat = [], []

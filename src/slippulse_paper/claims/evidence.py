@@ -130,9 +130,10 @@ class Evidence:
     def __init__(
         self, tables: Mapping[str, pd.DataFrame], entries: Texts, steady: float, readings: Texts
     ) -> None:
-        """Keep the arguments, and prepare the tables of three lattices for each simulation.
+        """Keep the arguments, which are explained at the class, and prepare tables of lattices.
 
-        They are explained at the class.
+        There are three tables for each simulation that also ran on two coarser lattices. The table
+        coarser/NAME has its coarser runs.
         """
         self.tables = tables
         self.entries = entries

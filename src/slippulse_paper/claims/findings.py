@@ -86,15 +86,20 @@ def numbers(
 def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
     """Return by how much damping changes L_trans, for each boundary condition.
 
+    The result is empty if a changed configuration has no runs without damping.
+
     ..._change : median ratio of L_trans at the largest damping ratio to L_trans without damping
-    ..._scenes, ..._runs : number of scenes, and of those that have both values of L_trans
+    ..._scenes : number of scenes that were simulated at several damping ratios
+    ..._runs : number of these scenes that have a transition both at the largest damping ratio and
+        without damping
     ratio : the largest damping ratio
     """
     values: dict[str, float] = {}
     for boundary in ("displacement", "stress"):
-        table = evidence.finest(f"damping_{boundary}").fillna({"gamma": 0.0})
+        table = evidence.finest(f"damping_{boundary}")
         table = table.set_index(["left", "width", "gamma", "release", "dx", "damping_ratio"])
-        # One row for each scene, and one column for each damping ratio, in ascending order.
+        # One row for each scene, and one column for each damping ratio, in ascending order. The
+        # length is NaN in a run without a transition.
         lengths = table["transition_length"].unstack()
         if 0.0 not in lengths:
             return {}
@@ -109,8 +114,9 @@ def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """Return the best fit to the published figure, as numbers for the text.
 
-    ratio, low, high : damping ratio, and the ends of its confidence region at 95 %
-    degrees : degrees of freedom
+    release, ratio : release rule and damping ratio of the fit
+    low, high : ends of the confidence region of the damping ratio at 95 %
+    chi_square, degrees : chi-square and degrees of freedom
     difference : chi-square with the other release rule, minus chi-square of the best fit
     """
     fits = infer_parameters(evidence.tables["published_figure"])

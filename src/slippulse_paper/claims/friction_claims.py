@@ -62,7 +62,8 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     A rupture counts as a pulse unless its regime is "crack". Runs in which blocks would slide back
     are left out, and so are ruptures that stop at once.
     """
-    # Where the column over_critical is 0, friction is constant, which is not another law.
+    # The rows with these two roles are simulated ruptures. Where the column over_critical is 0,
+    # friction is constant, which is not another law.
     linear_in_rate = evidence.tables["rate_dependence"].query(
         "role == 'lattice' and over_critical != 0"
     )
@@ -86,7 +87,8 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     It decays if its largest velocity falls by more than the tolerance, on the finest and on the
     coarsest lattice. Each value of the rate strengthening counts as one run.
     """
-    # The largest velocity at several times, for each rate strengthening and spacing dx.
+    # The rows with this role are for held stress. They have the largest velocity at several times,
+    # for each rate strengthening and spacing dx.
     table = evidence.tables["rate_dependence"].query("role == 'arrest'")
     # Without rate strengthening the pulse is steady from this time on.
     late = table[table["time"] >= 0.1 * table["time"].max()]
@@ -96,8 +98,8 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     decays = (velocities.last() < lowest_steady_velocities).unstack()
     with_strengthening = decays[decays.index > 0.0]
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
-    steady_count_by_spacing = (~with_strengthening).sum()
-    steady_count = float(steady_count_by_spacing.max())
+    # The number of steady pulses may differ between lattices. The largest number is shown.
+    steady_count = float((~with_strengthening).sum().max())
     words = "number of values of rate strengthening for which a pulse stays steady"
     # The caveat is that only one friction law was tested.
     return Qualitative(
@@ -110,11 +112,15 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
 def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether other laws change width and slip of pulses by more than the tolerance.
 
-    Pulses at STRONGEST_RATES of rate strengthening are compared with those at constant friction and
-    the same level of pre-stress. Sentences also quote front speeds under slip weakening.
+    Pulses at the strongest weakening and the strongest strengthening with slip rate
+    (STRONGEST_RATES) are compared with pulses at constant friction and the same pre-stress level.
+
+    slowest, fastest : range of the front speeds under slip weakening, at the pre-stress ``level``
+    undamped : front speed at this level by the paper's formula, at constant friction
     """
+    # The rows with this role are simulated pulses. The column over_critical and STRONGEST_RATES
+    # have the rate strengthening divided by the critical one.
     runs = evidence.tables["rate_dependence"].query("role == 'lattice'")
-    # The column over_critical has the rate strengthening divided by the critical one.
     sizes = runs.set_index(["level", "over_critical"])[["pulse_width", "pulse_slip"]]
     at_constant_friction = sizes.xs(0.0, level="over_critical")
     changes_by_rate = []
@@ -136,7 +142,6 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
         "slowest": speeds.min(),
         "fastest": speeds.max(),
         "level": SLIP_WEAKENING_LEVEL,
-        # The paper's formula at constant friction, without damping.
         "undamped": 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2),
     }
     # The caveat is that only one friction law was tested.

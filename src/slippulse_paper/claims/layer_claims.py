@@ -114,7 +114,13 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are also steady if the strength depends on the normal stress.
 
-    The column coupling has the strength of this dependence.
+    The column coupling has the factor by which the strength depends on it. The pulses that run to
+    the right and to the left then differ, and each counts.
+
+    steady_right, steady_left : number of steady pulses that run to each side
+    steady_to, failed_from : largest coupling of a steady pulse, smallest of one that is not steady
+    weakest, strongest : range of the coupling
+    split_low, split_high : range of the positions at which pulses split
     """
     decided = steady_on_two_grids(evidence, "coupled", evidence.tolerance(id))
     coupled = finest_rows(rows_at_station(evidence, LAST), "coupled")
@@ -130,7 +136,6 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
             "steady_left": float((steady["side"] == LEFT).sum()),
             "steady_to": float(steady["coupling"].max()),
             "failed_from": float(failed["coupling"].min()),
-            "failed_sides": float(failed["side"].nunique()),
             "weakest": float(coupled["coupling"].min()),
             "strongest": float(coupled["coupling"].max()),
             "split_low": float(coupled["split_position"].min()),
@@ -140,40 +145,36 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_free_top(evidence: Evidence, id: str) -> Approximate:
-    """Judge that pulses end after one crossing of the layer also if its top may rise.
+    """Judge that a point slides for one crossing time also if the top of the layer may rise.
 
-    A crossing is the time that a shear front needs to cross the layer.
+    The crossing time passes between the arrival of the front and that of shear waves from the top.
+    The parts free and held have the same pulses, with a top that may rise and with one that cannot.
     """
     rows = rows_at_station(evidence, LAST)
-    free, held = finest_rows(rows, "free"), finest_rows(rows, "held")
-    # The sliding time of each pulse, in crossings.
-    crossings, held_crossings = sliding_in_crossings(free), sliding_in_crossings(held)
-    longer = times_longer_with_free_top(rows)
+    # The sliding time of each pulse, divided by its crossing time.
+    crossings = sliding_in_crossings(finest_rows(rows, "free"))
     deviations = (crossings - 1.0).abs()
     # The sliding time is as uncertain as the pulse width, which changes from the second finest to
-    # the finest grid. The uncertainty is the largest of these changes, in crossings.
+    # the finest grid. The uncertainty is the largest of these changes, in crossing times.
     uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
+    in_crossings = "sliding time divided by the time for a shear front to cross the layer"
+    compared = {
+        f"{in_crossings}, top free to rise": crossings,
+        f"{in_crossings}, top held": sliding_in_crossings(finest_rows(rows, "held")),
+        "sliding time with free top divided by that with held top": times_longer_with_free_top(
+            rows
+        ),
+    }
+    further = {}
+    for words, times in compared.items():
+        further[f"{words}: smallest"] = float(times.min())
+        further[f"{words}: largest"] = float(times.max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(crossings.median()), uncertainty),
-        further={
-            "sliding time divided by the time for a shear front to cross the layer, top free to "
-            "rise: smallest": float(crossings.min()),
-            "sliding time divided by the time for a shear front to cross the layer, top free to "
-            "rise: largest": float(crossings.max()),
-            "sliding time divided by the time for a shear front to cross the layer, top held: "
-            "smallest": float(held_crossings.min()),
-            "sliding time divided by the time for a shear front to cross the layer, top held: "
-            "largest": float(held_crossings.max()),
-            "sliding time with free top divided by that with held top: smallest": float(
-                longer.min()
-            ),
-            "sliding time with free top divided by that with held top: largest": float(
-                longer.max()
-            ),
-        },
+        further=further,
     )
 
 
@@ -187,7 +188,11 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     """Judge ruptures under a stress boundary.
 
     In uniform pre-stress, a rupture must be a crack. If there is a barrier on one side, it must
-    stop on this side and become a pulse on the other.
+    stop on this side and become a pulse on the other. Barriers are on the left.
+
+    stop_low, stop_high : range of the distance from x = 0 to the stopped left front, divided by the
+        balance distance
+    stick_change : largest relative change of the time of the first stick by refinement
     """
     is_crack = on_two_grids(lambda coarser: never_sticks(evidence, coarser))
     is_stopped = on_two_grids(lambda coarser: stops_on_one_side(evidence, coarser))
@@ -221,18 +226,17 @@ def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
 
 
 def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.Series:
-    """Return whether each pulse is steady on its two finest grids.
+    """Return whether each pulse of a part is steady on its two finest grids.
 
     A pulse is steady if speed and slip change by less than the tolerance between the last two
-    stations, and if no point slides again behind it. The answer is None if the pulse splits on any
-    grid, since it does so elsewhere on another grid, or if the two finest grids disagree.
+    stations, and if no point slides again behind it. The answer is None if the two finest grids
+    disagree. It is also None if the pulse splits on any grid, because the position at which it
+    splits depends on the grid, so that the split may be a numerical error.
 
     part : far, damped or coupled
     """
-    at_last, at_second_last = (
-        rows_at_station(evidence, LAST),
-        rows_at_station(evidence, SECOND_LAST),
-    )
+    at_last = rows_at_station(evidence, LAST)
+    at_second_last = rows_at_station(evidence, SECOND_LAST)
     compared = ["speed", "pulse_slip"]
     is_steady_on_grids = []
     for coarser in (0, 1):
@@ -252,9 +256,9 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     """Return the pulses of the part far at the last station, with columns on how they split.
 
-    split_at, coarse_split_at : position of the split on the finest and on the second finest grid of
-        the pulse; NaN if there is none. The unit is H at the largest gamma. At a smaller gamma it
-        is longer, by the same factor as the distance of the last station.
+    split_at, coarse_split_at : position at which the pulse splits on its finest and on its second
+        finest grid, divided by the factor by which pulses are wider than those at the largest
+        gamma; NaN if the pulse does not split
     cells_in_weakening : number of cells in gamma d_c, the length over which the strength falls
     is_narrow : True at the largest gamma, at which pulses are narrowest
     is_steady : True if `steady_on_two_grids` is True at this tolerance
@@ -262,13 +266,13 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     rows = rows_at_station(evidence, LAST)
     followed = finest_rows(rows, "far")
     on_second_finest = finest_rows(rows, "far", coarser=1).reindex(followed.index)
-    # The unit of positions. The last station is nearest at the largest gamma.
-    unit = followed["sample_position"] / followed["sample_position"].min()
     gamma = followed.index.get_level_values("gamma")
     weakening = followed.index.get_level_values("weakening")
+    # Stations are farther away by this factor, too.
+    stretch = followed["sample_position"] / followed["sample_position"].min()
     return followed.assign(
-        split_at=followed["split_position"] / unit,
-        coarse_split_at=on_second_finest["split_position"] / unit,
+        split_at=followed["split_position"] / stretch,
+        coarse_split_at=on_second_finest["split_position"] / stretch,
         cells_in_weakening=gamma * weakening * followed["cells"],
         is_narrow=gamma == gamma.max(),
         is_steady=steady_on_two_grids(evidence, "far", tolerance).eq(True),
@@ -276,24 +280,18 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 
 
 def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
-    """Return how many pulses of the part far split, with which fracture energies, and where.
+    """Return how many pulses split, and the numbers of `ranges_of_splits` and `poorly_resolved`.
 
-    pulses, followed, split : number of pulses of the part pulse, of those that were followed in the
-        part far, and of those that split
-    near_distance, distance : distance over which the pulses of the parts pulse and far were
-        followed, at the largest gamma
-    narrow_gamma, narrow_energy : largest gamma and fracture energy of pulses that split. Pulses at
-        the largest gamma are narrow, and the others are wide (wide_gamma, wide_energy)
-    split_..., coarse_split_... : range of the positions at which narrow pulses split, on the finest
-        and on the second finest grid
-    wide_split_..., wide_coarse_splits : range of these positions for wide pulses on the finest
-        grid, and number of wide pulses that split on the second finest grid
-    step_... : of one pulse that belongs to the part step; the part far has it, too, but it is not
-        counted
+    pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
+        followed at the largest gamma
+    followed, distance : number of these pulses that are also in the part far, and the distance to
+        which they were followed there, at the largest gamma
+    split : number of pulses of the part far that split on the finest grid
+    step_energy, step_split : fracture energy of the one pulse of the part far that belongs to the
+        part step and is not counted, and the position at which it splits
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
-    unresolved... : of steady pulses with less than RESOLVED_CELLS cells in the length gamma d_c
 
-    tolerance : see `steady_on_two_grids`
+    tolerance : largest relative change of speed and slip of a steady pulse
     """
     pulses = finest_rows(rows_at_station(evidence, LAST), "pulse")
     followed = followed_pulses(evidence, tolerance)
@@ -301,14 +299,38 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     # The parameters of the pulses become columns.
     counted, step = followed[is_counted].reset_index(), followed[~is_counted]
     split = counted[counted["split_at"].notna()]
-    narrow, wide = split[split["is_narrow"]], split[~split["is_narrow"]]
-    steady = counted[counted["is_steady"]]
-    unresolved = steady[steady["cells_in_weakening"] < RESOLVED_CELLS]
     damped = steady_on_two_grids(evidence, "damped", tolerance)
-    return {
+    numbers = {
         "pulses": float(len(pulses)),
+        "near_distance": float(pulses["sample_position"].min()),
         "followed": float(len(counted)),
+        "distance": float(followed["sample_position"].min()),
         "split": float(len(split)),
+        "step_energy": float(step["fracture_energy"].min()),
+        "step_split": float(step["split_at"].min()),
+        "damped": float(len(damped)),
+        "damped_steady": float(damped.eq(True).sum()),
+    }
+    steady = counted[counted["is_steady"]]
+    return numbers | ranges_of_splits(split) | poorly_resolved(steady)
+
+
+def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
+    """Return at which gamma and fracture energies pulses split, and in which ranges of positions.
+
+    Pulses at the largest gamma are narrow, and the others are wide.
+
+    narrow_gamma, narrow_energy : largest gamma and fracture energy of narrow pulses that split
+    split_low, split_high : range of the positions at which narrow pulses split, on the finest grid
+    coarse_split_low, coarse_split_high : the same range on the second finest grid
+    wide_gamma, wide_energy, wide_split_low, wide_split_high : the same numbers of wide pulses, on
+        the finest grid
+    wide_coarse_splits : number of wide pulses that also split on the second finest grid
+
+    split : rows of `followed_pulses` with the pulses that split on the finest grid
+    """
+    narrow, wide = split[split["is_narrow"]], split[~split["is_narrow"]]
+    return {
         "narrow_gamma": float(narrow["gamma"].max()),
         "narrow_energy": float(narrow["fracture_energy"].max()),
         "split_low": float(narrow["split_at"].min()),
@@ -320,12 +342,23 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
         "wide_split_low": float(wide["split_at"].min()),
         "wide_split_high": float(wide["split_at"].max()),
         "wide_coarse_splits": float(wide["coarse_split_at"].count()),
-        "step_energy": float(step["fracture_energy"].min()),
-        "step_split": float(step["split_at"].min()),
-        "distance": float(followed["sample_position"].min()),
-        "damped": float(len(damped)),
-        "damped_steady": float(damped.eq(True).sum()),
-        "near_distance": float(pulses["sample_position"].min()),
+    }
+
+
+def poorly_resolved(steady: pd.DataFrame) -> dict[str, float]:
+    """Return numbers on the steady pulses for which the finest grid is rather coarse.
+
+    These have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
+
+    resolved_cells : the constant RESOLVED_CELLS
+    unresolved : number of these pulses
+    unresolved_gamma, unresolved_energy : their largest gamma and fracture energy
+    unresolved_cells : their smallest number of cells in gamma d_c
+
+    steady : rows of `followed_pulses` with the steady pulses
+    """
+    unresolved = steady[steady["cells_in_weakening"] < RESOLVED_CELLS]
+    return {
         "resolved_cells": RESOLVED_CELLS,
         "unresolved": float(len(unresolved)),
         "unresolved_gamma": float(unresolved["gamma"].max()),
@@ -347,7 +380,8 @@ def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
     """Return for each rupture with a barrier on the left whether it stops there.
 
     The left front must stop before the balance position. On the right there must be a pulse, which
-    must have passed the second last station by the end.
+    must have passed the second last station by the end. When the run ends, the front is not far
+    beyond the last station, so that a wide pulse may not have passed that one completely.
 
     coarser : 0 for the finest grid, 1 for the second finest
     """
@@ -361,7 +395,12 @@ def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
 
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
-    """Compare the pulse width in two dimensions with the paper's formula."""
+    """Compare the pulse width in two dimensions with the paper's formula.
+
+    least, most : range of the fracture energies
+    one_dimension_low, one_dimension_high : range of the width divided by the width in one dimension
+        with the same friction and with damping
+    """
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
     ratio = pulses["pulse_width"] / pulses["paper_pulse_width"]
@@ -410,19 +449,18 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     tough = points[points["fracture_energy"] > 1.0]
     # The answer is None for outcomes that leave it open.
     decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
-    # These outcomes are reported even if no point has them.
-    further = {f"points that are {outcome}": 0.0 for outcome in ("steady", "growing", "dying")}
-    for outcome, count in points["outcome"].value_counts().items():
-        further[f"points that are {outcome}"] = float(count)
-    tough_and_dying = (tough["outcome"] == "dying").sum()
+    # The first three outcomes are reported even if no point has them.
+    point_counts = {"steady": 0, "growing": 0, "dying": 0} | dict(points["outcome"].value_counts())
+    further = {f"points that are {name}": float(count) for name, count in point_counts.items()}
     further["points where the pulse dies, with more fracture energy than the layer can release"] = (
-        float(tough_and_dying)
+        float((tough["outcome"] == "dying").sum())
     )
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
     has_settled = max(differences) < evidence.tolerance(id)
     on_map = map_numbers(evidence)
-    template_values: dict[str, float] = step | on_map
+    template_values = step | on_map
+    # Number of values of gamma with points that are judged.
     template_values["elasticity_ratios"] = float(brittle["gamma"].nunique())
     template_values["has_settled"] = has_settled
     return Qualitative(
@@ -436,84 +474,111 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 def map_numbers(evidence: Evidence) -> dict[str, float]:
     """Return the conditions of the runs of `layer_map`, and how many of its pulses would split.
 
-    A point of the map is a pair of gamma and fracture energy. Its pulses are followed up to
-    last_position. Pulses of the part far are followed farther, and some of these split. A pulse
-    splits more easily if its fracture energy is smaller. So a point counts as splitting if, on any
-    grid, a pulse of the part far splits that has the gamma and level of the point, and at least its
-    fracture energy.
-
-    splitting_points : number of points that count as splitting
-    splitting_from : smallest distance at which one of these pulses of the part far splits
-
-    Positions and distances are in units of H for the largest gamma of the map. Pulses are wider at
-    a smaller gamma, so there the unit is longer, in proportion to 1/sqrt(gamma).
+    level_below, level_above, level : levels of the pre-stress before a step, and the level that all
+        pulses enter at the step
+    step_position, last_position : where the step is, and up to where pulses are followed, in H at
+        the largest gamma
+    coarse_cells, cells : cells over the height on the two grids
+    splitting_points, splitting_from : number of points whose pulses would split farther away, and
+        smallest distance at which they would (`split_distances`)
     """
     points = evidence.tables["layer_map"]
     at_largest_gamma = points.loc[points["gamma"].idxmax()]
-    conditions = ("level_below", "level_above", "step_position", "last_position", "coarse_cells")
-    numbers = {name: float(at_largest_gamma[name]) for name in (*conditions, "cells")}
-    far = rows_at_station(evidence, LAST).query("part == 'far'").dropna(subset=["split_position"])
-    distances = []
-    # No pulse can exist if the fracture energy is larger than the energy that is released, 1.
-    for point in points[points["fracture_energy"] < 1.0].itertuples():
-        is_alike = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
-        split = far[is_alike & (far["fracture_energy"] >= point.fracture_energy)]
-        if len(split):
-            # The unit of distances at this gamma, divided by H. All points have the same step
-            # position in their units.
-            unit = point.step_position / numbers["step_position"]
-            distances.append(float(split["split_position"].min()) / unit)
-    return numbers | {
+    columns = ("level_below", "level_above", "step_position", "last_position", "coarse_cells")
+    conditions = {name: float(at_largest_gamma[name]) for name in (*columns, "cells")}
+    distances = split_distances(evidence)
+    return conditions | {
         "level": float(at_largest_gamma["tau0"]),
         "splitting_points": float(len(distances)),
         "splitting_from": min(distances, default=np.nan),
     }
 
 
+def split_distances(evidence: Evidence) -> list[float]:
+    """Return for each point of `layer_map` whose pulses would split the distance at which they do.
+
+    A point is a pair of gamma and fracture energy. Pulses of the part far are followed farther than
+    those of the map, and some of them split. A pulse splits more easily if its fracture energy is
+    smaller. So the pulses of a point would split if, on any grid, a pulse of the part far splits
+    that has the same gamma and pre-stress, and at least the fracture energy of the point. The
+    smallest distance at which such a pulse splits counts.
+    """
+    points = evidence.tables["layer_map"]
+    far = rows_at_station(evidence, LAST).query("part == 'far'").dropna(subset=["split_position"])
+    distances = []
+    # At a larger fracture energy than 1, the energy that the layer can release, no pulse can exist.
+    for point in points[points["fracture_energy"] < 1.0].itertuples():
+        is_alike = np.isclose(far["gamma"], point.gamma) & np.isclose(far["tau0"], point.tau0)
+        split = far[is_alike & (far["fracture_energy"] >= point.fracture_energy)]
+        if len(split):
+            # At a smaller gamma pulses are wider, and the step is farther away by the same factor.
+            # Divided by it, distances at different gamma can be compared.
+            stretch = point.step_position / points["step_position"].min()
+            distances.append(float(split["split_position"].min()) / stretch)
+    return distances
+
+
 def layer_in_plane(evidence: Evidence) -> dict[str, float]:
     """Return the numbers for the section on the layer in two dimensions.
 
-    These numbers have the names below. The numbers of `speeds_above_waves`, `far_numbers` and
-    `across_a_step` are returned, too.
+    Most of them come from the functions that are called, which explain them. The others are:
 
-    pulses : number of pulses
-    level : level of the pre-stress that most pulses have
-    formula_speed : front speed by the paper's formula, at this level
-    thinnest_formula : width by the paper's formula, at this level and the smallest gamma
-    level_spread : see `spread_with_level`
+    QUANTITY_low, QUANTITY_high : smallest and largest value of each quantity
+    QUANTITY_change : largest relative change by refinement, from the second finest to the finest
+        grid
+    map_NAME : a number of `map_numbers`
     crossings, brittle_energy : the constants CROSSINGS_OF_TRANSITION and BRITTLE_ENERGY
-    QUANTITY_low, QUANTITY_high : smallest and largest value of a quantity. These are the quantities
-        of `pulse_quantities`, and first_stick, free and longer, which are explained below
-    QUANTITY_change : largest relative change from the second finest to the finest grid
-    map_NAME : see `map_numbers`
     """
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
-    varied = with_varied_energy(pulses)
-    numbers = {
-        "pulses": float(len(pulses)),
-        "level": float(varied.index.get_level_values("tau0")[0]),
-        "crossings": CROSSINGS_OF_TRANSITION,
-        "brittle_energy": BRITTLE_ENERGY,
-        "level_spread": spread_with_level(pulses),
-        "formula_speed": float(varied["paper_speed"].max()),
-        "thinnest_formula": float(with_smallest_gamma(varied)["paper_pulse_width"].max()),
-    }
-    quantities = pulse_quantities(pulses)
-    # The time of the first stick, divided by the time in which a shear wave runs to the top and
-    # back. The part patch has short runs, until the region in which the rupture starts has stuck.
-    patch = finest_rows(evidence.tables["layer"], "patch")
-    quantities["first_stick"] = patch["first_stick"] / patch["strip_first_stick"]
-    # In the part free the top may rise. Its sliding time is divided by the crossing time, and then
-    # by the sliding time with a held top.
-    quantities["free"] = sliding_in_crossings(finest_rows(rows, "free"))
-    quantities["longer"] = times_longer_with_free_top(rows)
+    numbers = {"crossings": CROSSINGS_OF_TRANSITION, "brittle_energy": BRITTLE_ENERGY}
+    numbers |= formula_numbers(pulses) | {"level_spread": spread_with_level(pulses)}
+    quantities = (
+        quantities_of_all_pulses(pulses)
+        | quantities_at_one_level(pulses)
+        | quantities_in_one_dimension(pulses)
+        | times_of_other_parts(evidence)
+    )
     for name, values in quantities.items():
         numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
     for quantity in CONVERGED_QUANTITIES:
         numbers[f"{quantity}_change"] = float(change_by_refinement(rows, "pulse", quantity).max())
     numbers |= {f"map_{name}": value for name, value in map_numbers(evidence).items()}
-    return numbers | speeds_above_waves(evidence) | far_numbers(evidence) | across_a_step(evidence)
+    return numbers | largest_speeds(evidence) | far_numbers(evidence) | across_a_step(evidence)
+
+
+def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
+    """Return numbers by the paper's formulas, at the pre-stress level that most pulses have.
+
+    level : this level
+    formula_speed : front speed by the formula
+    thinnest_formula : pulse width by the formula at the smallest gamma
+    """
+    at_level = with_varied_energy(pulses)
+    return {
+        "level": float(at_level.index.get_level_values("tau0")[0]),
+        "formula_speed": float(at_level["paper_speed"].max()),
+        "thinnest_formula": float(with_smallest_gamma(at_level)["paper_pulse_width"].max()),
+    }
+
+
+def times_of_other_parts(evidence: Evidence) -> dict[str, pd.Series]:
+    """Return times in runs of the parts patch and free, each with one value for each run.
+
+    first_stick : time of the first stick, divided by the time in which a shear wave runs to the top
+        and back. The runs of the part patch end when the region in which the rupture starts has
+        stuck.
+    free : time for which a point slides, divided by the crossing time (`sliding_in_crossings`), if
+        the top may rise
+    longer : time for which a point slides if the top may rise, divided by the time if it cannot
+    """
+    rows = rows_at_station(evidence, LAST)
+    patch = finest_rows(evidence.tables["layer"], "patch")
+    return {
+        "first_stick": patch["first_stick"] / patch["strip_first_stick"],
+        "free": sliding_in_crossings(finest_rows(rows, "free")),
+        "longer": times_longer_with_free_top(rows),
+    }
 
 
 def with_varied_energy(pulses: pd.DataFrame) -> pd.DataFrame:
@@ -532,36 +597,17 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
     return pulses.xs(gamma.min(), level="gamma")
 
 
-def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
+def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     """Return quantities of pulses by name, each with one value for each pulse.
-
-    These are for all pulses:
 
     gamma, tau0 : elasticity ratio, and level of the pre-stress
     wider : pulse width divided by the width in one dimension with the same friction and with
         damping
-    crossing : sliding time divided by the crossing time (`sliding_in_crossings`)
-    sliding : sliding time divided by H/c_s, where c_s is the shear wave speed
+    crossing : time for which a point slides, divided by the crossing time (`sliding_in_crossings`)
+    sliding : time for which a point slides, divided by H/c_s, where c_s is the shear wave speed
     slip_over_bound : slip divided by the largest slip that the energy balance allows
     waves : fraction of the released energy that leaves as waves
-
-    The others are for the pulses that differ only in gamma and fracture energy:
-
-    energy, speed : fracture energy, and front speed
-    width : width by the paper's formula divided by the pulse width
-    slip : slip divided by the slip by the paper's formula
-    brittle_speed, brittle_slip : speed and slip, for the smallest fracture energy
-    brittle_crossing : crossing, for fracture energies below BRITTLE_ENERGY
-    line_speed, line_width, line_slip : speed, width and slip of pulses in one dimension with the
-        same friction and with damping; width and slip are divided by those of the paper's formulas
-    less_damped : width in one dimension with the smaller damping, divided by the width with the
-        larger one
-    thinnest_width : pulse width for the smallest gamma, at which the layer is thinnest compared
-        with the pulses
     """
-    varied = with_varied_energy(pulses)
-    brittle = varied[varied["fracture_energy"] < BRITTLE_ENERGY]
-    most_brittle = varied[varied["fracture_energy"] == varied["fracture_energy"].min()]
     gamma = pulses.index.get_level_values("gamma")
     # At s times the slip of the formula, the layer releases the energy 4 s (1 - s). The unit is the
     # largest energy that it can release, by which the fracture energy is divided, too.
@@ -570,32 +616,67 @@ def pulse_quantities(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
     return {
         "gamma": gamma,
         "tau0": pulses.index.get_level_values("tau0"),
-        "energy": varied["fracture_energy"],
-        "speed": varied["speed"],
-        "brittle_speed": most_brittle["speed"],
-        "width": varied["paper_pulse_width"] / varied["pulse_width"],
-        "slip": varied["pulse_slip"] / varied["paper_pulse_slip"],
-        "brittle_slip": most_brittle["pulse_slip"] / most_brittle["paper_pulse_slip"],
-        "line_speed": varied["damped_speed"],
-        "line_width": varied["damped_pulse_width"] / varied["paper_pulse_width"],
-        "line_slip": varied["damped_pulse_slip"] / varied["paper_pulse_slip"],
         "wider": pulses["pulse_width"] / pulses["damped_pulse_width"],
-        "less_damped": varied["less_damped_pulse_width"] / varied["damped_pulse_width"],
         "crossing": sliding_in_crossings(pulses),
-        "brittle_crossing": sliding_in_crossings(brittle),
         # In these units c_s = sqrt(gamma/2) and H = 1.
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
-        "thinnest_width": with_smallest_gamma(varied)["pulse_width"],
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
         "waves": 1.0 - pulses["fracture_energy"] / released_energy,
     }
 
 
-def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
+def quantities_at_one_level(pulses: pd.DataFrame) -> dict[str, pd.Series]:
+    """Return quantities of the pulses that differ only in gamma and fracture energy.
+
+    energy, speed : fracture energy, and front speed
+    width : width by the paper's formula divided by the pulse width
+    slip : slip divided by the slip by the paper's formula
+    thinnest_width : pulse width at the smallest gamma, at which the layer is thinnest compared with
+        the pulses
+    brittle_speed, brittle_slip : speed and slip as above, at the smallest fracture energy
+    brittle_crossing : time for which a point slides, divided by the crossing time
+        (`sliding_in_crossings`), at fracture energies below BRITTLE_ENERGY
+    """
+    at_level = with_varied_energy(pulses)
+    slip = at_level["pulse_slip"] / at_level["paper_pulse_slip"]
+    energy = at_level["fracture_energy"]
+    is_most_brittle = energy == energy.min()
+    return {
+        "energy": energy,
+        "speed": at_level["speed"],
+        "width": at_level["paper_pulse_width"] / at_level["pulse_width"],
+        "slip": slip,
+        "thinnest_width": with_smallest_gamma(at_level)["pulse_width"],
+        "brittle_speed": at_level["speed"][is_most_brittle],
+        "brittle_slip": slip[is_most_brittle],
+        "brittle_crossing": sliding_in_crossings(at_level[energy < BRITTLE_ENERGY]),
+    }
+
+
+def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
+    """Return quantities of pulses in one dimension with the same friction, and with damping.
+
+    They are for the pulses that differ only in gamma and fracture energy.
+
+    line_speed : front speed
+    line_width, line_slip : width and slip, divided by those of the paper's formulas
+    less_damped : width at a smaller damping, divided by the width at the paper's damping
+    """
+    at_level = with_varied_energy(pulses)
+    return {
+        "line_speed": at_level["damped_speed"],
+        "line_width": at_level["damped_pulse_width"] / at_level["paper_pulse_width"],
+        "line_slip": at_level["damped_pulse_slip"] / at_level["paper_pulse_slip"],
+        "less_damped": at_level["less_damped_pulse_width"] / at_level["damped_pulse_width"],
+    }
+
+
+def largest_speeds(evidence: Evidence) -> dict[str, float]:
     """Return the speeds of the fastest pulse on its coarsest and on its finest grid.
 
-    Speeds are measured at the last station. Also return the largest speed of all pulses with
-    damping (damped_speed), on the finest grids.
+    They show that a speed slightly above that of the fastest wave is an error of the grid. Also
+    return the largest speed of all pulses with damping (damped_speed), on the finest grids. Speeds
+    are measured at the last station.
     """
     at_station = rows_at_station(evidence, LAST)
     rows = at_station.query("part == 'pulse'")
@@ -615,12 +696,12 @@ def speeds_above_waves(evidence: Evidence) -> dict[str, float]:
 def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
+    The numbers of `split_pulses`, which say how many of them split and where, are among these.
+
     far_speed, far_slip : largest relative change of speed and slip between the last two stations,
         of pulses that do not split
     from_near_slip : largest relative change of their slip between the first and the last station
-    drawn_split : see `split_of_drawn_pulse`
-
-    The numbers of `split_pulses`, which say how many pulses split and where, are returned, too.
+    drawn_split : position at which the pulse that a figure shows splits
     """
     numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
     numbers["drawn_split"] = split_of_drawn_pulse(evidence)

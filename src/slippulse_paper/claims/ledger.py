@@ -170,6 +170,7 @@ class QualitativeEntry(Entry):
         held, _, others = self.measured_text().partition(", ")
         if others:
             return f"The claim holds in {held} cases ({others})."
+        # If a claim holds in all runs, its verdict has a reservation only because of a condition.
         return "The claim holds only under a condition that the paper does not state."
 
 

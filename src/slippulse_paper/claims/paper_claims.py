@@ -143,6 +143,7 @@ def all_claims(
         combinations of open choices
     sentences : sentences of the paper with their places, from manuscript/statements.yaml
     """
+    # A claim whose entry has no rule is judged by a function.
     without_rule = {id for id, entry in evidence.entries.items() if "rule" not in entry}
     in_only_one = without_rule.symmetric_difference(JUDGES_BY_CLAIM)
     if in_only_one:
@@ -199,6 +200,7 @@ def fields_of_claim(
         # A claim that the paper does not make has verdicts with other names.
         fields["verdict"] = VERDICTS_BEYOND.get(fields["verdict"], fields["verdict"])
     fields["figure_or_section"] = place or "beyond the paper"
+    # A claim also does not count if it follows from others, or is a remark on a drawing.
     fields["counted"] = not (fields["follows_from"] or fields["beyond"] or fields["remark"])
     if "earlier_tolerance" in entry:
         fields["at_earlier"] = claim.verdict(float(entry["earlier_tolerance"]))

@@ -76,7 +76,8 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     solution does (`Evidence.holds_in_runs`). The rule may also ask for additional numbers: counts
     of regimes, and values of expressions over the runs of the first sweep.
 
-    keys : fields of the rule, which are explained at `Always`
+    keys : fields of the rule (`Always`), such as the sweeps, the condition that must hold (holds),
+        and the regimes of exact solutions in which it holds (ends)
     """
     rule = Always(**keys)
     # The condition may contain {tolerance}, the tolerance of the claim, and {steady}, the largest
@@ -128,7 +129,10 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
 
 
 def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
-    """Compare the front speed without damping, for gamma from 0.1 to 1, with the formula."""
+    """Compare the front speed without damping, for gamma from 0.1 to 1, with the formula.
+
+    The claim front_speed is about the limit of a small gamma.
+    """
     where = f"{WITHOUT_DAMPING} and 0.1 <= gamma <= 1"
     tables = evidence.lattices("speed_against_gamma", "steady_displacement", where=where)
     return evidence.approximate(id, tables, "front_speed_right", "paper_front_speed_right")
@@ -143,7 +147,8 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     table = evidence.finest("any_prestress")
     allowed = evidence.tolerance(id)
     width = table["pulse_width"]
-    is_thin = 1.0 / width <= allowed
+    # A run without a pulse is undecided (None). It has no width.
+    is_thin = (1.0 / width <= allowed).astype(object).where(width.notna(), None)
     further = {
         "narrowest pulse, in H": width.min(),
         "widest pulse, in H": width.max(),
@@ -201,7 +206,7 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether there is only one pulse for each pre-stress, no matter how it began.
 
     Each pair of pulses in the same pre-stress must have the same velocity, width and slip, within
-    the tolerance.
+    the tolerance. The pulses began at nucleations of different width, or in another pre-stress.
     """
     table = evidence.finest("nucleation_widths", "any_prestress", "steady_elsewhere", *PERTURBED)
     sizes = ["pulse_peak_velocity", "pulse_width", "pulse_slip"]
@@ -220,21 +225,23 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
     Its final slip must be that of a simulated steady pulse in this pre-stress, within the tolerance
     and on the two finest lattices. Deviations from two predicted slips are shown, too.
     """
-    deviations_by_lattice = []
+    deviations_by_lattice, answers_by_lattice = [], []
     perturbed, unperturbed = evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED)
     for pulses, steady_pulses in zip(perturbed, unperturbed, strict=True):
         matching = matching_steady_pulses(pulses, steady_pulses)
         # The three slips of a steady pulse: simulated, exact, and by the formula without damping.
         steady_slips = matching[["pulse_slip", "exact_pulse_slip", "paper_pulse_slip"]]
         final_slips = pulses[["pulse_slip"]].to_numpy()
-        deviations_by_lattice.append((final_slips / steady_slips - 1.0).abs())
-    finest, middle, _ = deviations_by_lattice
-    tolerance = evidence.tolerance(id)
-    largest = finest.max().fillna(0.0)
+        deviations = (final_slips / steady_slips - 1.0).abs()
+        is_settled = deviations["pulse_slip"] <= evidence.tolerance(id)
+        # The answer stays open if a changed configuration has no steady pulse to compare with.
+        has_steady_pulse = steady_slips["pulse_slip"].notna()
+        answers_by_lattice.append(is_settled.astype(object).where(has_steady_pulse, None))
+        deviations_by_lattice.append(deviations)
+    on_finest, on_middle, _ = answers_by_lattice
+    largest = deviations_by_lattice[0].max()
     return Qualitative(
-        decided=agreed_answers(
-            finest["pulse_slip"] <= tolerance, middle["pulse_slip"] <= tolerance
-        ),
+        decided=agreed_answers(on_finest, on_middle),
         further={
             "largest deviation of the slip": float(largest["pulse_slip"]),
             "largest deviation of the slip from the exact slip": float(largest["exact_pulse_slip"]),
@@ -252,6 +259,7 @@ def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) ->
     """
     # A steady pulse is in uniform pre-stress, whose level is in the column left.
     keys = ["left", "gamma", "damping_ratio"]
+    # Several simulations may have the same steady pulse.
     by_level = steady_pulses.drop_duplicates(keys).set_index(keys)
     # The column beyond has the level that a pulse enters.
     entered = pulses[["beyond", "gamma", "damping_ratio"]]
@@ -261,19 +269,21 @@ def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) ->
 def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     """Judge whether a pulse leaves no strain if it keeps its shape, and only then.
 
-    Pulses in zero pre-stress keep their shape, so the strain that they leave must be 0. The
-    additional requirement is that pulses that leave strain grow or decay.
+    Pulses in zero pre-stress keep their shape, so the strain that they leave behind must be 0. The
+    additional requirement is about pulses that enter another pre-stress: all that leave a strain
+    behind that is larger than the tolerance must grow or decay.
     """
-    # In this simulation pulses enter the pre-stress level in the column beyond.
+    # In this simulation pulses enter the pre-stress level in the column beyond. The column changed
+    # is 1 or -1 if they grow or decay there, and otherwise 0.
     enters_stress = "beyond != 0"
     strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
-    has_changed = evidence.holds_in_runs(
-        "regimes_beyond", where=enters_stress, holds="changed != 0"
+    has_changed = np.array(
+        evidence.holds_in_runs("regimes_beyond", where=enters_stress, holds="changed != 0"), object
     )
 
     def changed_if_strained(tolerance: float) -> Qualitative:
         """Judge whether all pulses that leave a strain above the tolerance grow or decay."""
-        return Qualitative(decided=np.array(has_changed, object)[strains > tolerance])
+        return Qualitative(decided=has_changed[strains > tolerance])
 
     in_zero_prestress = evidence.finest("stress_pulses", where=WITHOUT_DAMPING)
     claim = evidence.equation(id, in_zero_prestress, quantity="strain_left", predicted="0")
@@ -297,6 +307,7 @@ def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     sizes = ["pulse_peak_velocity", HALF_WIDTH]
     decided: list[bool | None] = []
     for differences, uncertainties in differences_of_pairs(table, sizes):
+        # Pulses count as the same only if their differences are surely within the tolerance.
         is_same_pulse = all_within(differences, uncertainties, allowed, add_uncertainties=True)
         decided.append(None if is_same_pulse is None else not is_same_pulse)
     return Qualitative(decided=decided)

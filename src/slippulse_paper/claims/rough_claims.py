@@ -47,6 +47,10 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     The paper states no limit of the roughness. Ours is that the standard deviation of the
     pre-stress, divided by its level, is at most the tolerance. If pulses die in rougher ensembles,
     the claim needs this limit as a condition. Each pulse counts as one run.
+
+    largest_rate : upper bound of the death rate, if no pulse dies where the pre-stress is smooth
+    dying, stronger : number of pulses that die in rougher ensembles, and of all pulses in them
+    least_deviation : least standard deviation of these ensembles, divided by the level
     """
     rows = ensembles(evidence, "displacement")
     roughness = rows["deviation"] / rows["level"]
@@ -55,7 +59,6 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     alive, dead = (smooth["pulses"] - smooth["deaths"]).sum(), smooth["deaths"].sum()
     dead_in_rough, all_in_rough = rough["deaths"].sum(), rough["pulses"].sum()
     template_values = {
-        # Upper bound of the death rate, if no pulse dies where the pre-stress is smooth.
         "largest_rate": RULE_OF_THREE / smooth["distance"].sum(),
         "dying": dead_in_rough,
         "stronger": all_in_rough,
@@ -179,7 +182,8 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
     """Return numbers that show how accurate the measured death rates are.
 
     grid_..., grid_fine_... : spacing dx and number of deaths on the coarsest and the finest lattice
-    near_..., far_... : death rate in the near and in the far half of a longer rough pre-stress
+    near_..., far_... : death rate in the near and in the far half of a longer rough pre-stress, its
+        confidence interval, and the distance at which the half ends (stop)
     """
     by_spacing = checks[checks["part"] == "grid"].sort_values("dx")
     fine, coarse = by_spacing.iloc[0], by_spacing.iloc[-1]
@@ -203,13 +207,14 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
     """Return how near final slip and front speed are to those of steady pulses.
 
     short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
-        among those with recorded slip
+        among those whose slip was recorded (the others have no memory)
     ..._correlation_length, ..._deviation : of the rough pre-stress
     ..._local, ..._mean : median relative deviation of the slip from that of a steady pulse at the
         local pre-stress, and at the mean pre-stress
     ..._slowness : largest relative deviation of the slowness (time per distance) of a front from
         the mean slowness of steady fronts at the local pre-stress
-    memory : distance after which a pulse has forgotten a change of the pre-stress
+    memory : distance after which a pulse has forgotten a change of the pre-stress, at the level of
+        the first of these ensembles
     forgotten : largest relative change of the slip by a bump that is farther away than the memory
     """
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
@@ -223,7 +228,8 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
             f"{name}_mean": ensemble["off_mean"],
             f"{name}_slowness": ensemble["slowness_off"],
         }
-    # The distance from the bump is in units of the memory. The column high has the largest change.
+    # In these rows the column distance has the distance from the bump, in units of the memory, and
+    # the column high has the largest change of the slip over all runs.
     beyond_memory = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
     return numbers | {"memory": shortest["memory"], "forgotten": beyond_memory["high"].max()}
 

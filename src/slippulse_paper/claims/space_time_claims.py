@@ -56,7 +56,11 @@ def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> 
 
 
 def judge_arrows(evidence: Evidence, id: str) -> Reading:
-    """Judge the two arrows of the left panel by the chi-square that they add to the best fit."""
+    """Judge the two arrows of the left panel by the chi-square that they add to the best fit.
+
+    longer : how much longer each drawn arrow is than in the best fit to all other readings
+    apart : distance between the fronts at the time at which the drawn arrow for T_trans ends
+    """
     study = evidence.tables["published_figure"]
     with_arrows = infer_parameters(study, part="arrows")["best"]
     without_arrows = infer_parameters(study)["best"]
@@ -66,11 +70,11 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
             statement = evidence.readings[name]["statement"]
             further[f"{statement}, drawn value minus value of the best fit {words} arrows"] = excess
     readings = readings_by_name(evidence)
-    # Position of the right front at the time at which the arrow for T_trans ends.
+    # The path of the right front in the figure is a straight line.
     front_position = readings["intercept"] + readings["front_speed"] * readings["arrow_time"]
     template_values = readings | {
         "longer": [*excess_lengths(evidence, without_arrows).values()],
-        # Distance between the fronts, which are symmetric.
+        # The left front is as far from x = 0.
         "apart": 2.0 * front_position,
     }
     return Reading(
@@ -118,7 +122,9 @@ def judge_right_panel(evidence: Evidence, id: str) -> Reading:
 def values_of_our_figure(evidence: Evidence, simulation: str) -> dict[str, float]:
     """Return the values in our own figure that correspond to the readings of one panel.
 
-    simulation : name of the simulation of the panel; means over its runs are returned
+    They are means over all runs. The key is what was read, in words, such as "slope of the front".
+
+    simulation : name of the simulation of the panel
     """
     runs = evidence.finest(simulation)
     values = {}

@@ -91,32 +91,36 @@ class Runs(NamedTuple):
     tables: list[pd.DataFrame]
 
 
-def shared_choices(table: pd.DataFrame) -> Chosen:
-    """Return the release rule and the damping ratio, which all runs of a table share."""
-    return {name: table[name].iloc[0] for name in ("release", "damping_ratio")}
+def lattice_runs(tables: list[pd.DataFrame]) -> list[Runs]:
+    """Return simulated runs, divided by release rule and damping ratio; empty if there are none.
 
-
-def lattice_runs(tables: list[pd.DataFrame]) -> Runs:
-    """Return simulated runs with their choices; ``tables`` has one table for each lattice."""
-    return Runs(shared_choices(tables[0]) | {"solution": "lattice"}, tables)
+    tables : one table for each lattice, the finest first, with the same runs in the same order
+    """
+    finest = tables[0]
+    choices = finest[["release", "damping_ratio"]].drop_duplicates()
+    runs = []
+    for release, damping_ratio in choices.itertuples(index=False):
+        has_choices = (finest["release"] == release) & (finest["damping_ratio"] == damping_ratio)
+        choice: Chosen = {"release": release, "damping_ratio": damping_ratio, "solution": "lattice"}
+        runs.append(Runs(choice, [table[has_choices.to_numpy()] for table in tables]))
+    return runs
 
 
 def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return the lattice runs of figure 5, and the undamped ones of figures 10 and 11.
 
-    A sweep is left out if a changed configuration has no such runs in it.
+    So a claim is judged at the damping ratio of figure 5, and without damping. A sweep is left out
+    if a changed configuration has no such runs in it.
     """
-    # The sweeps of these figures, with conditions that select runs.
+    # The sweeps of these figures, with conditions that select runs. Runs with a pre-stress at which
+    # blocks would slide back are left out.
     conditions = {
         f"scaling_{boundary}": NO_BACKWARD_SLIP,
         f"damping_{boundary}": f"{NO_BACKWARD_SLIP} and damping_ratio == 0",
     }
     simulated = []
     for sweep, condition in conditions.items():
-        lattices = evidence.lattices(sweep, where=condition)
-        finest = lattices[0]
-        if not finest.empty:
-            simulated.append(lattice_runs(lattices))
+        simulated += lattice_runs(evidence.lattices(sweep, where=condition))
     return simulated
 
 
@@ -126,10 +130,13 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     The combination with which we drew figure 5 comes first, because claims show the numbers of the
     first one.
     """
-    # The names of these choices, and their values in figure 5.
+    # The names of these choices, and their values in the first run of figure 5.
     open_choices = ["release", "damping_ratio"]
-    choices_of_figure = shared_choices(evidence.tables[f"scaling_{boundary}"])
+    first_run = evidence.tables[f"scaling_{boundary}"].iloc[0]
+    choices_of_figure: Chosen = {name: first_run[name] for name in open_choices}
     if boundary == "stress":
+        # The fraction of the path at which the left front counts as arrested is not a choice of
+        # figure 5. The numbers that claims show are for SHOWN_FRACTION.
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
@@ -139,7 +146,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         choice: Chosen = dict(zip(open_choices, values, strict=True))
         is_of_figure = choices_of_figure.items() <= choice.items()
         group = runs_of_figure if is_of_figure else other_runs
-        # In a changed configuration, no run may be left. Claims are then not testable.
+        # Runs with a pre-stress at which blocks would slide back are left out. In a changed
+        # configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
         group.append(Runs(choice | {"solution": "exact"}, [rows]))
     return runs_of_figure + other_runs
@@ -264,7 +272,11 @@ class JudgedEstimate(NamedTuple):
 
 
 def judge_estimate(evidence: Evidence, id: str, boundary: str, quantity: str) -> JudgedEstimate:
-    """Judge the paper's estimate of a quantity ("time" or "length") at each combination."""
+    """Judge the paper's estimate of a quantity ("time" or "length") at each combination.
+
+    Also return how much lattice runs deviate from exact theory, and the ratio of the arrow in
+    figure 4 to the estimate.
+    """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
         """Compare the quantity with its estimate, in the runs of one combination."""
@@ -368,7 +380,8 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
     """Judge if time T and length L of the transition are proportional to the paper's estimates.
 
     T and L of the runs are fitted as powers of their estimates, and the exponents should be 1. The
-    exponent that is farther from 1 decides.
+    exponent that is farther from 1 decides. Its uncertainty includes the largest change if all runs
+    with one value of one of the varied columns are left out.
     """
     if boundary == "displacement":
         runs, varied_columns = transitions(evidence), ["left", "gamma"]
@@ -403,7 +416,8 @@ def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
 def stress_front_speeds_near_one(evidence: Evidence, id: str) -> OverChoices:
     """Judge whether the mean speeds of both fronts until the arrest are 1, the wave speed.
 
-    The front whose median deviation is larger decides.
+    The front whose median deviation is larger decides. Its median speed is shown for each fraction
+    of the path at which the left front may count as arrested, and for the last release.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Approximate:
@@ -430,24 +444,21 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge if the arrest takes longer than at speed 1; a tolerance limits how much longer."""
+        """Judge if the arrest takes longer than at speed 1, and by how much if there is a limit.
+
+        The limit is the tolerance. The tolerance 0 means that there is none.
+        """
         return replace(
             takes_longer(tables),
             extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
         )
 
     runs = arrests(evidence)
-    smallest_ratios = []
-    for choice, tables in runs:
-        if choice["solution"] == "exact":
-            ratio = tables[0]["time"] / tables[0]["covered"]
-            smallest_ratios.append(float(ratio.min()))
-    further = {
-        "smallest exact transition time divided by the time of a front at the wave speed": min(
-            smallest_ratios
-        )
-    }
-    return over_choices(judge_each(runs, judge), further=further)
+    exact = pd.concat([tables[0] for choice, tables in runs if choice["solution"] == "exact"])
+    # At the wave speed 1 the time is equal to the covered distance.
+    ratio = exact["time"] / exact["covered"]
+    words = "smallest exact transition time divided by the time of a front at the wave speed"
+    return over_choices(judge_each(runs, judge), further={words: float(ratio.min())})
 
 
 def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitative:
@@ -467,17 +478,17 @@ def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitati
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     """Judge the distance of the last release on the left, which should be |x_minus|.
 
-    The claim is judged for each damping ratio separately. The numbers that are shown are those of
-    all runs together.
+    The claim is judged for each damping ratio and release rule separately. The numbers that are
+    shown are those of all runs together.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
     tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
     finest = tables[0]
     runs = []
+    # Claims about open choices are judged at these damping ratios.
     for damping_ratio in sorted(evidence.tables["open_choices"]["damping_ratio"].unique()):
         has_ratio = (finest["damping_ratio"] == damping_ratio).to_numpy()
-        if has_ratio.any():
-            runs.append(lattice_runs([table[has_ratio] for table in tables]))
+        runs += lattice_runs([table[has_ratio] for table in tables])
     # In a changed configuration, no run may have these ratios. All runs are then judged together.
     runs = runs or [Runs({"solution": "lattice"}, tables)]
     judge = partial(judge_arrest_distance, evidence, id)
@@ -494,6 +505,8 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
     There are two additional requirements. The median difference between the two distances (gap)
     must be small. And the distance must be proportional to |x_minus|: if it is fitted as a power of
     |x_minus|, the exponent must be near 1.
+
+    near : verdict on the gap
     """
     measured, predicted = "last_release_distance", "balance_distance"
     median_gaps = [(table[predicted] - table[measured]).abs().median() for table in tables]
@@ -566,7 +579,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 
     Both must fall from each value of gamma to the next larger one. At the three smallest values,
     both must be powers of gamma with an exponent that is negative by more than three standard
-    errors.
+    errors. The answer is None if there are fewer than three values of gamma.
 
     runs : runs that differ only in gamma, in ascending order
     """

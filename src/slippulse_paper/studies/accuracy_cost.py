@@ -148,6 +148,7 @@ def settings_of_schemes() -> list[Setting]:
             compared.append(Setting(scheme="fixed_step", order=1, step=step, dx=dx))
     for dx, order, step in product(SPACINGS, ORDERS, STEPS):
         compared.append(Setting(scheme="localised", order=order, step=step, dx=dx))
+    # The exact solution uses neither the order nor the step.
     compared.append(Setting(scheme="continuum", order=1, step=1.0, dx=EXACT_SPACING))
     return compared
 
@@ -215,6 +216,8 @@ def pulse_errors(setting: Setting, damping_ratio: float, front_window: float) ->
 
 def crack_errors(setting: Setting) -> dict[str, float]:
     """Return the relative errors of the left front of a crack, and the cost of its run.
+
+    Exact values are for max(DAMPING_RATIOS), with which `Setting.run_crack` runs the crack.
 
     share_time : error of the time at which the front has covered COVERED_FRACTION of its path
     arrest_position : error of the distance that the front has run at the end

@@ -105,8 +105,8 @@ def rows_by_length(case: dict[str, Any], pulse: SteadyPulse) -> list[dict[str, A
 def exact_row(tau0: float, barrier: float, gamma: float, damping_ratio: float) -> dict[str, Any]:
     """Return the depth to which a pulse enters a barrier, as a row of the map.
 
-    Rows of the other parts begin with the same columns. The column exact has the depth by exact
-    theory. The column paper has an estimate that the authors of the paper use in later code.
+    Rows of the other parts are copies of such a row with more columns. The column exact has the
+    depth by exact theory. The column paper has an estimate that the authors use in later code.
 
     tau0 : pre-stress before the barrier, in which the pulse is steady
     barrier : negative pre-stress in the barrier
@@ -132,7 +132,8 @@ def passes(case: dict[str, Any], pulse: SteadyPulse, relative_length: float) -> 
     exact_depth = case["exact"]
     length = relative_length * exact_depth
     distance = penetration_on_lattice(case, pulse, PASSING_SPACING, barrier_length=length)
-    # A pulse that has passed goes on beyond the end of the barrier.
+    # A pulse that has passed goes on far beyond the end of the barrier, and one that has not passed
+    # ends in the barrier.
     return distance > length + 0.5 * exact_depth
 
 

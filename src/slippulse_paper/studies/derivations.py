@@ -40,8 +40,9 @@ FOLLOWED_SPEEDS = (1.25, 2.0, 4.0)
 FOLLOWED_DAMPING_RATIOS = (0.0, 0.2)
 FOLLOWED_STIFFNESSES = (0.0, 0.5)
 
-# For each number its name and the function that computes it. The functions are called one by one,
-# so that only one number is NaN if theory refuses the configured parameters of this number.
+# For each number its name and the function that computes it. The function raises an error if theory
+# refuses the configured parameters. The functions are called one by one, so that only the numbers
+# of those that fail are NaN.
 NumberFunctions = dict[str, Callable[[], float]]
 
 
@@ -79,7 +80,6 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "strain_term": lambda: abs(curvature_at_nucleation(published_rupture())),
         **front_functions(),
     }
-    # The functions are called one by one, so that only one number is NaN if theory refuses it.
     rows = [(name, math.nan, value_or_nan(compute)) for name, compute in functions.items()]
     rows += rows_by_position(published_rupture)
     return pd.DataFrame(rows, columns=["quantity", "x", "value"])
@@ -89,6 +89,7 @@ def rows_by_position(compute_rupture: Callable[[], Rupture]) -> list[tuple[str, 
     """Return rows (quantity, x, value) of release time, stick time and final slip at POSITIONS.
 
     The values are NaN if ``compute_rupture`` raises an error, because there is no exact rupture.
+    It returns the same rupture at each call, and computes it only once.
     """
     rows = []
     for quantity in ("release_time", "stick_time", "final_slip"):
@@ -106,7 +107,8 @@ def pulse_functions(
 ) -> NumberFunctions:
     """Return the numbers of a steady pulse that enters a barrier, each as a function to call.
 
-    The pre-stress is ``level`` before the barrier and -``level`` in it.
+    Each function may raise an error of the theory. The pre-stress is ``level`` before the barrier
+    and -``level`` in it.
     """
 
     def pulse() -> SteadyPulse:
@@ -130,7 +132,7 @@ def one_way_functions(
     """Return the numbers of a rupture with one pulse, to the right, each as a function to call.
 
     The left front stops, because the pre-stress is -``level`` on the left. Its stop is NaN if it
-    comes after ONE_WAY_DURATION.
+    comes after ONE_WAY_DURATION. The functions of the transition raise an error if there is none.
     """
     prestress = Prestress(-level, level)
     rupture = Rupture(prestress, gamma, damping_ratio, release, ONE_WAY_DURATION)
@@ -154,8 +156,9 @@ def transition_functions(level: float, levels: Sequence[float]) -> NumberFunctio
     transition_point_... : the rupture begins at a single point
     transition_peak_... : the rupture begins at a Gaussian of width W = 1
 
-    The pre-stress is ``level``, or the lowest or the highest of ``levels``, which are in ascending
-    order. For a Gaussian, gamma is 1 or SOFT_GAMMA.
+    Each function may raise an error of the theory. The pre-stress is ``level``, or the lowest or
+    the highest of ``levels``, which are in ascending order. For a Gaussian, gamma is 1 or
+    SOFT_GAMMA.
     """
     lowest, highest = levels[0], levels[-1]
     return {
@@ -175,8 +178,12 @@ def front_functions() -> NumberFunctions:
     A steady front is admissible if no block ahead of it reaches the threshold before its release,
     and the block released last slides until the next release.
     """
-    parameters = product(FOLLOWED_SPEEDS, FOLLOWED_DAMPING_RATIOS, FOLLOWED_STIFFNESSES, RELEASES)
-    fronts = [steady_front(*values) for values in parameters]
+    fronts = [
+        steady_front(speed, damping_ratio, stiffness, release)
+        for speed, damping_ratio, stiffness, release in product(
+            FOLLOWED_SPEEDS, FOLLOWED_DAMPING_RATIOS, FOLLOWED_STIFFNESSES, RELEASES
+        )
+    ]
     return {
         "fronts_block_by_block": lambda: len(fronts),
         "fronts_admissible": lambda: sum(front.admissible for front in fronts),

@@ -95,7 +95,8 @@ def _lattice_markers(run: xr.Dataset) -> pd.DataFrame:
 def _compared_positions(rupture: Rupture) -> np.ndarray:
     """Return the positions at which lattices are compared with the exact solution.
 
-    They cover a fraction of the path of the left front and of that of the right front.
+    They cover a fraction of the path of the left front and of that of the right front. The fraction
+    is smaller for a front that stops, because it stops abruptly.
     """
     left_end, right_end = outermost_fronts(rupture)
     left_fraction = RUNNING_FRONT_FRACTION
@@ -107,7 +108,7 @@ def _compared_positions(rupture: Rupture) -> np.ndarray:
 
 
 def _exact_values(rupture: Rupture, x: np.ndarray) -> Values:
-    """Return the exact release time, stick time and final slip at some positions."""
+    """Return the exact release time, stick time and slip at the end, at some positions."""
     return {
         "release": rupture.release_time(x),
         "stick": rupture.stick_time(x),
@@ -128,6 +129,7 @@ def _velocity_map(run: xr.Dataset, rupture: Rupture) -> list[pd.DataFrame]:
     parts = []
     for source, half, velocity in (("exact", left_x, exact), ("lattice", right_x, on_lattice)):
         grid = xr.DataArray(velocity, [("time", times), ("position", half)], name="slip_velocity")
+        # Rounded numbers make the file of this large table smaller.
         rows = grid.to_series().reset_index().round({"slip_velocity": 5, "position": 9})
         is_sliding = rows["slip_velocity"] > 0.0
         parts.append(rows[is_sliding].assign(role=f"map_{source}"))
@@ -139,7 +141,8 @@ def _differences(
 ) -> pd.DataFrame:
     """Return the mean difference between a run and the exact solution, one row per quantity.
 
-    The difference is divided by the mean of the exact values.
+    The difference is divided by the mean of the exact values. The column places has the number of
+    compared values.
 
     x, exact_values : positions, and exact values there of all quantities except slip velocity.
         Slip velocity is compared at the samples of the run between the first and last position.

@@ -109,7 +109,8 @@ class Case:
         if self.quantity not in ("front speed", "final slip"):
             return 0.0
         if self.family == "gamma":
-            # The speed depends on gamma dx^2 here. It is NaN if no front is faster than the waves.
+            # These cases are undamped, and their speed depends on gamma dx^2. It is NaN if no front
+            # is faster than the waves.
             return value_or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
         pulse = steady_pulse(
             self.level,
@@ -164,7 +165,8 @@ def levels_near_1() -> Iterator[Case]:
 def levels_near_0() -> Iterator[Case]:
     """Yield cases of narrow pulses. Those that the lattice does not resolve should be flagged.
 
-    A pulse is resolved if it is many blocks wide. Its width is proportional to the level.
+    A pulse is resolved if it is many blocks wide. Its width is proportional to the level. The
+    nucleation is narrow, too, but at least one block wide.
     """
     for level, dx, duration, width, expected_verdict in (
         (0.05, 0.8, 60.0, 0.8, FLAGGED),
@@ -205,9 +207,10 @@ def small_gammas() -> Iterator[Case]:
 
 
 def large_gammas() -> Iterator[Case]:
-    """Yield cases of front speeds at increasing gamma dx^2. Large values should be flagged.
+    """Yield cases of front speeds at increasing gamma dx^2.
 
-    In the last case, no front on the lattice is faster than the waves.
+    Large values should be flagged, because the pulse is then only a few blocks wide. In the last
+    two cases, no front on the lattice is faster than the waves.
     """
     dx = 0.01
     for gamma, expected_verdict in (
@@ -261,7 +264,10 @@ def strong_damping() -> Iterator[Case]:
 
 
 def extreme_spacings() -> Iterator[Case]:
-    """Yield cases with spacings from one layer thickness to a thousandth of it."""
+    """Yield cases with spacings from one layer thickness to a thousandth of it.
+
+    The largest spacing should be flagged, because the pulse is then only a few blocks wide.
+    """
     for dx, quantity, duration, expected_verdict in (
         (1.0, "front speed", 60.0, FLAGGED),
         (0.3, "front speed", 60.0, RIGHT),
@@ -318,12 +324,12 @@ def negative_levels() -> Iterator[Case]:
     """
     for level, dx, friction_ratio, damping_ratio, expected_verdict in (
         (-1.0, 0.005, 5.0, 0.1, RIGHT),
-        (-1.0, 0.01, 5.0, 0.0, FLAGGED),
-        (-10.0, 0.02, 5.0, 0.1, FLAGGED),
+        (-1.0, 0.01, 5.0, 0.0, FLAGGED),  # undamped
+        (-10.0, 0.02, 5.0, 0.1, FLAGGED),  # coarse
         (-10.0, 0.004, 5.0, 0.1, RIGHT),
-        (-30.0, 0.002, 5.0, 0.1, FLAGGED),
+        (-30.0, 0.002, 5.0, 0.1, FLAGGED),  # blocks would slide back
         (-30.0, 0.002, 60.0, 0.1, RIGHT),
-        (-100.0, 0.05, 60.0, 0.1, FLAGGED),
+        (-100.0, 0.05, 60.0, 0.1, FLAGGED),  # coarse
         (-100.0, 0.001, 60.0, 0.1, RIGHT),
     ):
         yield Case(
@@ -332,6 +338,7 @@ def negative_levels() -> Iterator[Case]:
             quantity="T_trans",
             expected_verdict=expected_verdict,
             dx=dx,
+            # In units of the exact T_trans.
             duration=1.5,
             level=level,
             gamma=0.0,

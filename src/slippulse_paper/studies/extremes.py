@@ -183,7 +183,7 @@ def additional_quantity(run: xr.Dataset, quantity: str) -> float:
         divided by the largest slip
     passes by : distance that the right front has run beyond the centre of a barrier; 0 if it has
         not reached the centre
-    speed drift, slip drift : see `drift`
+    speed drift, slip drift : relative change of the front speed or slip over most of the path
     """
     x, slip = run["x"].values, run["slip"].values
     if quantity == "meeting time":

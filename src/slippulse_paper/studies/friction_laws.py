@@ -95,7 +95,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def _rows_of_all_laws(still_fraction: float) -> list[dict[str, Any]]:
     """Simulate ruptures under all laws at all levels, and return one row for each.
 
-    still_fraction : see `_simulated_row`
+    still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
     rows = []
     for level in LEVELS:
@@ -122,7 +122,7 @@ def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
 
     The exact speed is NaN if the fracture energy is too large for a rupture.
 
-    still_fraction : see `_simulated_row`
+    still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
     rows = []
     for level, dx, distance_over_dx in product(
@@ -245,7 +245,12 @@ def _regime(right: xr.Dataset, balance_slip: float, still_fraction: float) -> st
 
 
 def _exact_row(level: float, law: Friction) -> dict[str, Any]:
-    """Return the exact numbers of a case; width and slip are left out if its pulse never sticks."""
+    """Return speed, width and slip of an exact pulse, in the limit dx -> 0.
+
+    The column strength is the strength of the law, relative to the pre-stress ``level``. Width and
+    slip are left out if the pulse never sticks.
+    """
+    # Slip weakening has a limit dx -> 0 at fixed beta, all other laws have it at fixed beta/dx.
     if isinstance(law, SlipWeakening):
         pulse = cached_pulse(level, GAMMA, BETA, law.d_c)
     else:

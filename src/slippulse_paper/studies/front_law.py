@@ -80,11 +80,14 @@ def prestress_lines(runs: pd.DataFrame) -> Iterator[pd.DataFrame]:
 
 
 def spring_lines(runs: pd.DataFrame) -> Iterator[pd.DataFrame]:
-    """Yield front speeds as functions of gamma dx^2, by level and damping ratio."""
+    """Yield front speeds as functions of gamma dx^2, by level and damping ratio.
+
+    The figure shows leaf springs under the total release rule only.
+    """
     for level, damping_ratio in runs[["left", "damping_ratio"]].drop_duplicates().values:
         # The speed depends on gamma and dx only through gamma dx^2, so dx = 1 is enough.
         speeds = [
-            _speed(level, stiffness, 1.0, damping_ratio, "total")
+            _speed(level, gamma=stiffness, dx=1.0, damping_ratio=damping_ratio, release="total")
             for stiffness in SPRING_STIFFNESSES
         ]
         line = {

@@ -102,9 +102,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 
     pulse : pulses at several fracture energies and levels
     far : the same pulses, farther away
-    damped : those that split, with the paper's damping
+    damped : those of the part far that split, with the paper's damping
     patch : short runs, until the region in which the rupture starts has stuck
-    step : pulses that enter another pre-stress
+    step : pulses that enter another pre-stress, and for comparison pulses that do not
     free : pulses in a layer whose top is free to rise
     held : the same pulses in a layer whose top is held
     coupled : pulses with a strength that depends on the normal stress
@@ -160,11 +160,13 @@ def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     first_run = simulate_layer(first_scene)
     near_rows, far_rows = measured_rows("pulse", first_scene, first_run, positions), []
     near_scene = shortened(first_scene, first_run, positions)
+    # The speed at the last station gives the time to the stations farther away.
     far_scene = extended(near_scene, speed=near_rows[-1]["speed"])
     far_grids = grids_far_away(near_scene)
     if coarsest in far_grids:
         far_rows += rows_at_far_stations("far", far_scene, simulate_layer(far_scene))
     for cells in finer_grids(near_scene):
+        # All rows of one run have its split_position. The last row is of the next coarser grid.
         split_on_coarser_grid = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
         is_followed_far = split_on_coarser_grid or cells in far_grids
         scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
@@ -205,8 +207,9 @@ def is_long(scene: LayerScene) -> bool:
 def finer_grids(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the grids for a pulse that are finer than the coarsest grid.
 
-    There are two such grids, or three for very brittle pulses and for brittle pulses at GAMMA. At
-    small gamma, where pulses are wide and runs are long, there is one, or two if the pulse is
+    A pulse is brittle if its strength falls over a short length, which needs a fine grid. There are
+    three finer grids for very brittle pulses and for brittle pulses at GAMMA, and two for others.
+    At small gamma, where pulses are wide and runs are long, there is one, or two if the pulse is
     brittle and its run is not long.
 
     scene : a scene of the pulse with the duration and the trail that it needs
@@ -221,9 +224,10 @@ def finer_grids(scene: LayerScene) -> Sequence[int]:
 def grids_far_away(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the grids on which a pulse is followed to FAR_STATIONS.
 
-    These are the two coarsest grids in general, and the two middle ones for pulses at GAMMA and for
-    brittle pulses, unless gamma is small. Very brittle pulses have the three finest grids. If the
-    run is long, there is none.
+    A pulse is brittle if its strength falls over a short length, which needs a fine grid. Very
+    brittle pulses have the three finest grids. Pulses at GAMMA, and brittle pulses unless gamma is
+    small, have the two middle grids, and all others the two coarsest. If the run is long, there is
+    none.
     """
     if is_long(scene):
         return ()
@@ -243,6 +247,7 @@ def extended(scene: LayerScene, speed: float) -> LayerScene:
     speed : front speed of the pulse
     """
     additional_distance = (FAR_STATIONS[-1] - STATION_POSITIONS[-1]) * stretch(scene.gamma)
+    # The front may become slower by the fraction SLOWER_FRONT on its way.
     additional_time = (1.0 + SLOWER_FRONT) * additional_distance / speed
     # Waves run at speed 1.
     trail = scene.trail + max(0.0, additional_time - additional_distance)
@@ -284,6 +289,7 @@ def patch_rows(gamma: float) -> Rows:
     strip_first_stick has the time at which an infinite layer (a strip) that slides uniformly would
     stick. In this time a shear wave runs to the top of the layer and back.
     """
+    # The unit of speed is the compressional wave speed, and gamma is 2 G/(lambda + 2 G).
     shear_wave_speed = math.sqrt(0.5 * gamma)
     # The layer has the height 1.
     strip_first_stick = 2.0 / shear_wave_speed
@@ -406,7 +412,8 @@ def rows_across_a_step(
     The column tau0 has the level that the pulse enters.
 
     weakening : slip over which the strength falls
-    grids, stations : see `rows_at_stations`
+    grids : numbers of cells over the height, the coarsest grid first
+    stations : measured positions at GAMMA; at another gamma they are farther out by `stretch`
     """
     scene = uniform_scene("displacement", gamma, before, weakening)
     if before != level:
@@ -448,6 +455,7 @@ def shortened(scene: LayerScene, run: LayerRun, positions: Sequence[float]) -> L
 
     run : the run of the scene on a coarse grid
     """
+    # Sliding times are averaged over a window around each position, as long as scene.nucleation.
     half_window = 0.5 * scene.nucleation
     first, last = min(positions) - half_window, max(positions) + half_window
     is_measured = (run.x >= first) & (run.x <= last)
@@ -509,6 +517,7 @@ def measured_rows(
         "coupling": scene.coupling,
         "cells": scene.cells,
     }
+    # The unit of the fracture energy, G_0, is 0 if the pre-stress is.
     if tau0 > 0.0:
         parameters["fracture_energy"] = scene.weakening * gamma / tau0**2
     numbers_of_run = numbers_of_whole_run(scene, run, side)
@@ -525,8 +534,11 @@ def numbers_of_whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[st
     first_stick : time at which the middle of the nucleation region sticks. Infinite if it never
         sticks. NaN if the scene has a finite trail, because then the middle is not solved until the
         end: only the part of the layer within this length behind the waves is.
-    earliest_stick, earliest_stick_position : time and distance from x = 0 of the first stick
-    end : position that the front has reached at the end of the run
+    earliest_stick, earliest_stick_position : time of the first stick anywhere, and its distance
+        from x = 0
+    largest_velocity : largest slip velocity at the end of the run
+    energy_residual : residual of the energy balance
+    end : position of the front on the given side (1 for the right, -1 for the left) at the end
     """
     first_stick = float(run.stick_time[np.argmin(np.abs(run.x))])
     if not math.isfinite(first_stick):
@@ -601,7 +613,8 @@ def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
 def field_rows(scene: LayerScene) -> pd.DataFrame:
     """Return the horizontal velocity in the layer at the end of a scene, at some grid nodes.
 
-    The part of the layer that no wave has reached is left out.
+    The part of the layer that no wave has reached is left out. The scene has the fracture energy
+    DRAWN_ENERGY.
     """
     run = simulate_layer(scene)
     # Waves run at most at speed 1, from the edge of the nucleation region at x = scene.nucleation.

@@ -140,7 +140,8 @@ def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
     cells_in_weakening : cells of the fine grid in the length over which the strength falls
     """
     first, last = rows.iloc[0], rows.iloc[-1]
-    # The length over which the strength falls is gamma times the weakening.
+    # The weakening is the slip over which the strength falls. A pulse slips by as much within a
+    # length of the order of gamma times the weakening.
     changes = {
         "first_slip": first["pulse_slip"],
         "change": last["pulse_slip"] / first["pulse_slip"] - 1.0,
@@ -152,12 +153,12 @@ def numbers_of_run(rows: pd.DataFrame) -> pd.Series:
 
 
 def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
-    """Simulate one pulse, and return its slip at each position of the layer.
+    """Simulate one pulse, and return its slip at each position; 0 where it has died before.
 
     cells : number of cells per unit of length
 
-    Raises ValueError if the pulse has not passed a position in time. In the thick layer it must
-    pass before waves may return from the top, and in the thin layer before the end.
+    Raises ValueError if a position has slipped but has not stuck in time. In the thick layer it
+    must stick before waves may return from the top, and in the thin layer before the end.
     """
     thickness = layer.thickness
     # All results of the run are in units of the thickness of its own layer, and converted below.
@@ -196,6 +197,7 @@ def scene_in_own_units(layer: Layer, pulse: Pulse, cells: int) -> LayerScene:
         duration=layer.duration / thickness,
         cells=round(cells * thickness),
         nucleation=pulse.patch_half_length / thickness,
+        # Velocities are the same in all units, because times and slips have the same factor.
         rate=RATE,
         trail=layer.trail / thickness,
         precision="single",

@@ -39,6 +39,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     points = list(product(given["gamma"], given["fracture_energy"]))
     chunk, chunk_count = settings.get("chunk", (1, 1))
     rows = []
+    # The numbers of the points in the chunk.
     for number in sorted(runs_of(chunk, chunk_count, len(points))):
         gamma, energy = points[number]
         rows.append(row_of_point(gamma, energy, given["cells"]))

@@ -62,6 +62,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     ``open_choices`` lists the choices, with one row for each value of a choice.
     """
     with_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_displacement"]))
+    # The exact transition is known if the level, the same on both sides, is positive.
     with_springs = with_springs.query("left > 0")
     without_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_stress"]))
     # The left front arrests only in negative pre-stress.
@@ -102,6 +103,7 @@ def displacement_transitions(
         # Waves run at speed 1, so up to the time t only the fronts at |x| < t influence x = 0. The
         # fronts are also needed beyond ``uniform_from``.
         reach = max(float(latest_sticks.max()), 2.0 * uniform_from)
+        # The curve has panels so short that they resolve the waves at the largest gamma.
         prestress = Prestress(level, level, width)
         fronts = fast_fronts(prestress, damping_ratio, release, reach=reach, gamma=gammas.max())
         times = stick_times_of_centre(fronts, gammas, latest_sticks)

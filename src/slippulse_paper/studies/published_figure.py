@@ -256,6 +256,7 @@ class LeftPanel:
             max_step=MAX_STEP,
             order=ORDER,
         )
+        # The rupture is symmetric, so its right half is enough.
         run = sampled_run(scene, left=0.0)
         # The trailing edge is measured at the times of its readings.
         settings = {"front_window": FRONT_WINDOW, "trailing_times": self.edge_times}

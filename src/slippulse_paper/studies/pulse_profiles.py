@@ -69,10 +69,13 @@ def stress_profile(run: Run) -> pd.DataFrame:
     curve = pd.DataFrame({"x": x_minus_t, "velocity": velocity})
     curve = curve.sort_values("x", kind="stable", ignore_index=True)
     peak = curve["velocity"].argmax()
+    # From here on x is measured from the position of the largest velocity.
     curve["x"] -= curve["x"][peak]
-    # The tail is cut off, except one point at which the velocity is small.
-    is_beyond_tail = curve["velocity"] > TAIL_CUT * curve["velocity"][peak]
-    curve = curve[max(0, is_beyond_tail.argmax() - 1) :]
+    # Behind the pulse is an infinite tail. It is cut off, except the last point at which the
+    # velocity is below the fraction TAIL_CUT of the largest one.
+    is_in_pulse = curve["velocity"] > TAIL_CUT * curve["velocity"][peak]
+    first_in_pulse = is_in_pulse.argmax()
+    curve = curve[max(0, first_in_pulse - 1) :]
     # Points that nearly coincide with the one before are left out, because derivatives would fail.
     distance_to_previous = curve["x"].diff().fillna(np.inf)
     curve = curve[distance_to_previous > 1e-9 * np.ptp(curve["x"])]
@@ -83,5 +86,6 @@ def stress_profile(run: Run) -> pd.DataFrame:
     acceleration = -np.gradient(velocity, x)
     curves = dict(zip(FIELDS, (slip, velocity, acceleration), strict=True))
     rows = pd.DataFrame({"x": x} | curves)
+    # Theory has more points than a figure needs.
     stride = max(1, len(rows) // (2 * POINT_COUNT))
     return rows.iloc[::stride]

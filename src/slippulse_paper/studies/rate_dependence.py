@@ -97,6 +97,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "steady": _steady_pulses(),
         "map": pd.concat(maps),
         "arrest": pd.concat(arrests),
+        # Without rate strengthening slip spreads by waves, and there is no such asymptote.
         "asymptote": pd.concat([_asymptote(alpha) for alpha in ALPHAS if alpha > 0.0]),
     }
     tables_by_role = [rows.assign(role=role) for role, rows in parts.items()]
@@ -115,11 +116,11 @@ def _front_and_critical_alpha(level: float) -> Front:
 
 
 def _lattice_rows(still_fraction: float) -> pd.DataFrame:
-    """Run lattices at all levels and fractions of the critical rate strengthening.
+    """Return a row for each lattice run, at all levels and fractions of the critical alpha.
 
-    still_fraction : see `_lattice_row`
+    still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
-    # Below this value slip grows without bound, and the model refuses it.
+    # At a smaller rate strengthening slip grows without bound, and the model refuses it.
     smallest_alpha = -2.0 * np.sqrt(GAMMA)
     rows = []
     for level, fraction in product(LEVELS, CRITICAL_FRACTIONS):
@@ -136,9 +137,10 @@ def _critical_rate_strengthenings() -> pd.DataFrame:
 
 
 def _steady_pulses() -> pd.DataFrame:
-    """Return width and slip of exact steady pulses at SHOWN_LEVEL, by rate strengthening.
+    """Return width and slip of exact steady pulses at the pre-stress SHOWN_LEVEL.
 
-    The largest rate strengthening is just below the critical one, at which the width is infinite.
+    The rate strengthening alpha goes up to nearly the critical one, at which the width is infinite.
+    Friction with a negative alpha weakens with the slip rate.
     """
     speed, critical_alpha = _front_and_critical_alpha(SHOWN_LEVEL)
     rows = []
@@ -249,6 +251,7 @@ def _arrest(alpha: float, dx: float) -> pd.DataFrame:
         friction=LinearRate(alpha),
         max_step=0.4,
     )
+    # The samples cover the paths of both fronts.
     sampled_x = np.arange(-8.0, duration + 10.0, 0.25)
     run = simulate_on_lattice(scene, Samples(TIMES, sampled_x))
     x, release_time = run["x"].values, run["release_time"].values

@@ -130,7 +130,7 @@ def outline(
     """Return the series of an area or a line, from its corners or ends.
 
     corners : pairs of a left and a right level, one in each row
-    inside : one pair of levels in the area or on the line
+    inside : one pair of levels in the area or on the line, whose regime the whole series has
     mirrored : if True, the left and the right level are exchanged in all pairs
     """
     if mirrored:

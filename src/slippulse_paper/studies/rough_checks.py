@@ -113,6 +113,7 @@ def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
         for scene in scenes_of(sweep, profiles, dx=[dx]):
             run = simulated_run(scene)
             fates += [fate_of_pulse(run, side, stop=end_of_track) for side in (1, -1)]
+        # Deaths are counted from START on, which is beyond the region that the nucleation reaches.
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
 
@@ -199,6 +200,7 @@ def exact_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.Data
             compared = stuck_blocks[::blocks_per_comparison]
             exact_slip = rupture.final_slip(solution.x[compared])
             deviations.append(np.abs(solution.slip[compared] / exact_slip - 1.0))
+        # A deviation is NaN where the point still slides in the exact solution.
         median = float(np.nanmedian(np.concatenate(deviations)))
         row = {"part": "exact", "dx": dx, "change": median}
         rows.append(row | parameters_of(ensemble))

@@ -213,6 +213,7 @@ def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]
     slownesses_at_levels = 1.0 / front_speed(SPEED_LEVELS, damping_ratio)
     slownesses, predicted_slownesses = [], []
     for run in ensemble.runs:
+        # Blocks up to START are left out, because the nucleation changes the front speed there.
         is_passed = (run["x"] > START) & np.isfinite(run["release_time"])
         x, times = run["x"][is_passed], run["release_time"][is_passed]
         slownesses.append((times[-1] - times[0]) / np.ptp(x))
@@ -261,6 +262,7 @@ def stress_rows(ensemble: Ensemble, smooth_push: float) -> pd.DataFrame:
     numbers |= {"push": smooth_push, "diffusivity": variance_rate, "death_scale": death_scale}
     # Survival at the largest distance.
     numbers |= curve[["survival", "low", "high", "predicted"]].iloc[-1].to_dict()
+    # Only pulses that are alive have a velocity at the end.
     numbers |= velocity_numbers(pulses[~pulses["died"]], variance_rate)
     return pd.concat([pd.DataFrame([numbers]), pulses, curve]).assign(**parameters)
 
