@@ -260,6 +260,8 @@ def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: fl
 def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]:
     """Return the distances from the nucleation at which the pre-stress falls to 0, if it does.
 
+    For a table, only the shortest distance is returned.
+
     levels : levels of the pre-stress, towards which its Gaussian falls
     """
     if prestress.points:
