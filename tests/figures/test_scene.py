@@ -15,6 +15,7 @@ import slippulse as sp
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
 from slippulse.plotting import space_time
+from slippulse.plotting.style import COLOUR_CYCLE
 from slippulse.prediction.comparison import measured_table
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.resolve import resolve, scene_simulation
@@ -239,6 +240,28 @@ def test_a_user_defined_sweep_is_drawn_whatever_varies(config, tmp_path, name):
     values = [tuple(np.round(axes.lines[1].get_ydata(), 9)) for axes in shown]
     assert len({*values}) == len(values), "no panel twice"
     assert len({axes.get_xlabel() for axes in shown}) == 1
+
+
+def _texts_of_sweep(series):
+    numbers = {"quantity": "q", "label": "label", "axis": "gamma", "x": 1.0, "fixed": "fixed"}
+    columns = [*numbers, "series", "value", "theory", "run_flags"]
+    rows = pd.DataFrame(
+        [numbers | {"series": name, "value": 1.0} for name in series], None, columns
+    )
+    drawn = user_defined_sweep.draw(rows)
+    (legend,) = drawn.legends
+    return drawn.get_suptitle(), [text.get_text() for text in legend.get_texts()]
+
+
+def test_a_sweep_without_measured_numbers_says_so():
+    title, _ = _texts_of_sweep(series=[])
+    assert title == "no run gives a number that this figure shows"
+
+
+@pytest.mark.parametrize(("extra", "named"), [(0, len(COLOUR_CYCLE)), (1, 0)])
+def test_the_legend_of_a_sweep_names_only_coloured_series(extra, named):
+    series = [f"seed = {seed}" for seed in range(len(COLOUR_CYCLE) + extra)]
+    assert _texts_of_sweep(series) == ("fixed", [*series[:named], "simulation"])
 
 
 @pytest.mark.parametrize("samples", [None, SAMPLES], ids=["edges", "map"])
