@@ -223,6 +223,7 @@ class Run:
     """A run of Snakemake in a separate process group. The group ends when this process ends."""
 
     def __init__(self, arguments: list[str]) -> None:
+        """Start Snakemake with some arguments, and a shell that watches this process."""
         # A profile of the user could change what is made.
         environment = {
             key: value for key, value in os.environ.items() if key != "SNAKEMAKE_PROFILE"
@@ -386,14 +387,17 @@ def outdated_files(summary: str) -> Iterable[tuple[str, str]]:
     for line in summary.splitlines()[1:]:
         # The first column is the file. The last two are its status and what Snakemake plans.
         name, *_, status, plan = line.split("\t")
+        # Snakemake plans no update for a missing file if the files made from it are up to date.
         if plan != "no update" or status == "missing":
             yield name, "made from files that are not up to date" if status == "ok" else status
 
 
 def files_without_job(known_files: set[str]) -> set[str]:
-    """Return the files in the folder of results that no job of this workflow has made.
+    """Return the files in the folder of results that no rule has made.
 
-    known_files : files that are left out: those with a record, and those that are outdated
+    Hidden files and those in PATHS_WITHOUT_RULES are left out.
+
+    known_files : files that are left out, too: those with a record, and those that are outdated
     """
     from slippulse_paper.records.job_records import made_without_step
 
@@ -404,7 +408,7 @@ def files_without_job(known_files: set[str]) -> set[str]:
         if path.is_file() and not is_hidden and parts[0] not in PATHS_WITHOUT_RULES:
             unknown_files.add(str(path))
     unknown_files -= known_files
-    # The user's own rules write no records.
+    # Also leave out the files that rules of the user have made, which write no records.
     return unknown_files - made_without_step(unknown_files)
 
 

@@ -8,6 +8,8 @@ from scipy.optimize import brentq
 import slippulse as sp
 from slippulse.model.balance import integral
 from slippulse.theory import ArrestingCrack, Rupture, barrier_depth, front_speed
+from slippulse.theory.curve import Point
+from slippulse.theory.fast_front import FastFront
 from slippulse.theory.slowness import slowness
 
 # Allowed relative error of T(x).
@@ -105,6 +107,16 @@ def test_a_slow_front_behind_a_stretch_of_nearly_no_prestress_is_exact(edge, rat
         assert rupture.limit is None
         panels.add(len(rupture.stretches[0].panels))
     assert len(panels) == len(refinements)
+
+
+@pytest.mark.parametrize("gamma", [0.0, 0.65])
+def test_the_number_of_panels_of_a_fast_front_is_proportional_to_the_refinement(gamma):
+    counts = []
+    for refinement in (1, 2, 5):
+        front = FastFront(sp.Prestress(0.5, 0.5, width=None), gamma, 0.1, "total", refinement)
+        panels, _ = front.panels_to_right(Point(0.0, 0.0), stop=30.0, until=np.inf)
+        counts.append(len(panels))
+    assert counts == [counts[0], 2 * counts[0], 5 * counts[0]]
 
 
 @pytest.mark.parametrize("edge", [12.0, 20.0])

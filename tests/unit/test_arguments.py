@@ -14,6 +14,8 @@ from slippulse.model.stability import largest_step
 from slippulse.solver.fixed_step import LATTICES
 
 PLAIN = sp.Prestress(0.5, 0.5)
+SECOND_BARRIER = sp.Prestress(-0.5, 0.0, steps=((2.0, -0.3), (3.0, 0.0)))
+BARRIERS = sp.Prestress(0.5, 0.5, steps=((-4.0, 0.5), (-2.0, -0.5), (2.0, -0.5), (4.0, 0.5)))
 GOOD = {"boundary": "stress", "prestress": PLAIN, "duration": 0.2, "dx": 0.1}
 HELD = GOOD | {"boundary": "displacement", "gamma": 0.65}
 GOOD_SETTINGS = {"accuracy": 1e-2, "boundary": "displacement", "prestress": PLAIN, "gamma": 0.65}
@@ -220,6 +222,8 @@ CALLS = [
     ("tau0: 0.0; allowed", theory.uniform_transition_time, 0.0, 0.65),
     ("weakening: 0.4, at tau0 = 0.5", theory.weakening_pulse, 0.5, 2 / 3, 0.05, 0.4),
     ("take at most 20000 panels", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
+    ("prestress: changes its sign 3 times", theory.ArrestingCrack, SECOND_BARRIER, 0.1),
+    ("prestress: not symmetric, or", theory.exact_transition_displacement, BARRIERS, 0.65, 0.1),
 ]
 REFUSED = [(named, partial(function, *arguments)) for named, function, *arguments in CALLS]
 for cases, call in (

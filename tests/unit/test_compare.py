@@ -127,6 +127,19 @@ def test_runs_of_one_side_are_listed(tmp_path, capsys):
     assert "sweep.csv: only in the other folder: left 0.3, gamma 0.5" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("changes", "altered"),
+    [({"duration": 20.0}, ["duration"]), ({"duration": 20.0, "gamma": 0.3}, ["gamma"])],
+)
+def test_the_duration_is_altered_if_nothing_else_explains_it(tmp_path, changes, altered):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"left": left} | changes for left in (0.1, 0.2)])
+    table_of(other, [{"left": left} for left in (0.1, 0.2)])
+    runs = compare(here, other).runs[0]
+    assert (runs.altered_count, runs.altered_parameters) == (2, altered)
+    assert runs.only_new == runs.only_old == []
+
+
 def test_spacings_of_a_convergence_study_are_not_mixed(tmp_path):
     here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
     table_of(here, [{"dx": dx, "speed": dx} for dx in (0.04, 0.02)])

@@ -12,7 +12,7 @@ from faults import digests
 from pipeline_copy import made, planned, refused, snakemake
 from workflow.conftest import FIGURE, SMALL
 
-from slippulse.data.files import write_text
+from slippulse.data.files import CONFIGURATION_VARIABLE, write_text
 from slippulse_paper.records.sources import sources_of
 from slippulse_paper.steps.job import Job, JobFailed, run_job
 
@@ -79,6 +79,8 @@ def test_another_duration_simulates_again(small):
 def job(tmp_path, monkeypatch) -> Job:
     """A job that joins tables in an empty folder, with one unchanged source."""
     monkeypatch.chdir(tmp_path)
+    # The job sets this variable, and the value that it has now is restored after the test.
+    monkeypatch.setenv(CONFIGURATION_VARIABLE, "")
     write_text("point\n1\n", "results/a.csv")
     sources = sources_of(("slippulse_paper.records.lock",))
     variables = {"joined": "b.csv", "threads": 1}

@@ -5,6 +5,7 @@ by the negative pre-stress and approaches the position x_minus, but never arrive
 """
 
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..model.checks import check_number
 from ..model.prestress import Prestress
 from ..model.removed import ExplainsRemovedNames
 from ..model.roots import root_between
+from .prestress_pieces import split_into_pieces
 from .two_fronts import ExactTransition, fast_fronts
 
 # At this number of widths from its centre, a Gaussian is smaller than any positive number.
@@ -41,7 +43,8 @@ class ArrestingCrack(ExplainsRemovedNames):
 
     Parameters
     ----------
-    prestress : Prestress, tau(0) = 1, level 0 far to the right and negative far to the left
+    prestress : Prestress, tau(0) = 1, negative on the left of some position and nowhere else, and 0
+        far to the right
     damping_ratio, release : beta/dx, from 0 to 1e6; "total" or "elastic"
 
     Examples
@@ -55,6 +58,15 @@ class ArrestingCrack(ExplainsRemovedNames):
         self, prestress: Prestress, damping_ratio: float = 0.0, release: str = "total"
     ) -> None:
         self.balance_position = prestress_balance_position(prestress)
+        # If tau changed its sign again, the right front would be slowed by negative pre-stress, or
+        # the left front would become fast again in positive pre-stress.
+        pieces = [piece for piece in split_into_pieces(prestress) if piece.left < piece.right]
+        sign_changes = sum(piece.is_above != after.is_above for piece, after in pairwise(pieces))
+        if sign_changes != 1:
+            allowed = "profiles that change their sign once, from negative on the left"
+            raise ValueError(
+                f"prestress: changes its sign {sign_changes} times; allowed: {allowed}"
+            )
         self.prestress = prestress
         # Beyond this position the pre-stress is 0, and the right front runs at the wave speed.
         self.end = _right_end(prestress, GAUSSIAN_END_IN_WIDTHS)

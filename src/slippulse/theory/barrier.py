@@ -86,8 +86,9 @@ def barrier_depth(
 def _panels_before_barrier(tau0: float, speed: float) -> list[Panel]:
     """Return the panels of a front that runs right and reaches the barrier, at x = 0, at t = 0.
 
-    The elasticity ratio is 1. The panels cover a little more than the memory length of the pulse,
-    because what happened on the front before has no influence on the pulse.
+    tau0 and speed are the pre-stress and the front speed before the barrier. The elasticity ratio
+    is 1. The panels cover a little more than the memory length of the pulse, because what happened
+    on the front before has no influence on the pulse.
     """
     # A wave that starts on the front follows it at the speed 1. It remains in the pulse until the
     # trailing edge overtakes it, after the time width/(v - 1). In this time the front runs over the

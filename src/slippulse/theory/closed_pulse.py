@@ -98,8 +98,9 @@ def pulse_at_speed(
         slip     = tau_0/gamma {1 - exp(p xi) [cos(q xi) - p/q sin(q xi)]},
         velocity = -v tau_0/gamma (p^2 + q^2)/q exp(p xi) sin(q xi).
 
-    The pulse ends where the velocity returns to 0, at xi = -pi/q. Raises ValueError if slip does
-    not oscillate, or if a number overflows.
+    p and q follow from the equation of motion (`_growth_and_wavenumber`), in which alpha is the
+    rate strengthening. The pulse ends where the velocity returns to 0, at xi = -pi/q. Raises
+    ValueError if slip does not oscillate, or if a number overflows.
     """
     check_domains(tau0=tau0, gamma=gamma, beta=beta, rate_strengthening=rate_strengthening)
     check_number("speed", speed, above=1.0)

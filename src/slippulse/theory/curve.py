@@ -58,7 +58,8 @@ PANEL_FIELDS = ("x", "time", "t_plus_x", "t_minus_x", "source")
 def power_basis(count: int) -> np.ndarray:
     """Return the matrix from coefficients of a Legendre series to coefficients of powers.
 
-    Row m belongs to the power m, and column k to the Legendre polynomial of degree k.
+    Both have ``count`` coefficients. Row m belongs to the power m, and column k to the Legendre
+    polynomial of degree k.
     """
     columns = []
     for degree, unit in enumerate(np.eye(count)):

@@ -11,10 +11,8 @@ from .domains import check_domains
 from .fast_front import straight_panels
 from .front_speeds import front_speed
 from .part import Part
+from .prestress_pieces import split_into_pieces
 from .two_fronts import ExactTransition, fast_fronts
-
-# Largest length of a front in uniform pre-stress, in units of 1/sqrt(gamma).
-MAX_REACH = 10_000
 
 
 def exact_transition_displacement(
@@ -25,7 +23,8 @@ def exact_transition_displacement(
     Raises ValueError: outside the ranges below; if the rupture also nucleates away from x = 0; or
     if a front needs more than 20000 panels. This does not happen if gamma times the square of the
     Gaussian width is between 1e-17 and 1e6.
-    Source: the first zero of du/dt at x = 0, where symmetric scenes stick first. For other scenes,
+    Source: the first zero of du/dt at x = 0. With a Gaussian as the only change of the pre-stress,
+    x = 0 sticks first. With steps, bumps or points, another position may stick before;
     `Rupture.transition` examines all positions.
 
     Parameters
@@ -47,9 +46,10 @@ def exact_transition_displacement(
     check_domains(gamma=gamma)
     # The level far away, beyond all steps.
     level = float(prestress.level(np.asarray(1e300)))
-    if not prestress.symmetric or level <= 0.0:
-        allowed = "equal levels > 0 on both sides"
-        raise ValueError(f"prestress: not symmetric, or not positive far away; allowed: {allowed}")
+    is_nowhere_negative = all(piece.is_above for piece in split_into_pieces(prestress))
+    if not (prestress.symmetric and is_nowhere_negative and level > 0.0):
+        allowed = "equal values > 0 on both sides"
+        raise ValueError(f"prestress: not symmetric, or not positive; allowed: {allowed}")
     gamma = float(gamma)
     fronts_up_to = partial(
         fast_fronts, prestress, damping_ratio=damping_ratio, release=release, gamma=gamma
@@ -74,7 +74,10 @@ def exact_transition_displacement(
 
 
 def _distance_to_uniform(prestress: Prestress) -> float:
-    """Return the distance from x = 0 beyond which the pre-stress is uniform."""
+    """Return the distance from x = 0 beyond which the pre-stress is uniform.
+
+    At 20 widths from its centre, a Gaussian is smaller than any rounding error.
+    """
     ends_of_gaussians = [abs(centre) + 20.0 * width for centre, width in prestress.gaussians]
     steps_and_points = [abs(x) for x, _ in (*prestress.steps, *prestress.points)]
     return max([0.0, *ends_of_gaussians, *steps_and_points])
@@ -109,9 +112,8 @@ def uniform_transition_time(
     # A tiny tau would lose digits.
     tau = max(tau0, 1e-9)
     # The time is computed at gamma = 1, where it is below 10. Until then only the fronts at a
-    # distance below 10 influence x = 0. The curve of the fronts extends at least to 12.
-    reach = 12.0 / max(1.0 - slowness**2, 12.0 / MAX_REACH)
-    edges_of_panels = np.linspace(-reach, reach, 2 * int(np.ceil(reach)) + 1)
+    # distance below 10 influence x = 0. Their curve extends to 12, in panels of length 1.
+    edges_of_panels = np.linspace(-12.0, 12.0, 25)
     curve = Curve(straight_panels(edges_of_panels, slowness, tau))
     (stick,) = Part(curve, gamma=1.0, until=10.0).find_stick_times(np.zeros(1))
     return float(stick / np.sqrt(float(gamma)))

@@ -139,13 +139,14 @@ class FastFront:
         return self.pieces[bisect_right(self._piece_ends, x)]
 
     def max_panel_length(self, background: Interval) -> float:
-        """Return the largest allowed length of a panel on one interval of the linear background.
+        """Return the largest length of an unrefined panel on an interval of the linear background.
 
         The phase of the waves changes by at most MAX_PHASE along such a panel. It changes by
-        kernel_rate times the proper length along the front, the integral of sqrt(dx^2 - dT^2).
+        kernel_rate (sqrt(gamma), or more if drag is strong) times the proper length along the
+        front, the integral of sqrt(dx^2 - dT^2).
         """
         if self.kernel_rate == 0.0:
-            return MAX_LENGTH_WITHOUT_SPRINGS / self.refinement
+            return MAX_LENGTH_WITHOUT_SPRINGS
         # The phase changes fastest where the front is fastest, at the higher end of the interval.
         level = max(background.left_value, background.right_value)
         # If the background is not positive, a Gaussian of unknown height drives the front. Then the
@@ -158,7 +159,7 @@ class FastFront:
         length = MAX_SCALED_LENGTH
         if length * proper_length_per_x > MAX_PHASE:
             length = MAX_PHASE / proper_length_per_x
-        return length / self.kernel_rate / self.refinement
+        return length / self.kernel_rate
 
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
         """Return the panels of a front that runs right from a point, and the point where they end.
@@ -188,7 +189,10 @@ class FastFront:
         return panels, Point(x, time)
 
     def panels_between(self, background: Interval, start: Point, end: float) -> list[Panel]:
-        """Return the panels of a front that runs right from a point to an end, within one piece."""
+        """Return the panels of a front that runs right from a point to an end, within one piece.
+
+        background is the linear part of the pre-stress in this piece, to which Gaussians are added.
+        """
         edges = self._first_edges(background, start.x, end)
         # Panels on which 1/v or tau is not resolved are halved, until all are resolved.
         while True:
@@ -219,8 +223,8 @@ class FastFront:
     def _first_edges(self, background: Interval, start: float, end: float) -> np.ndarray:
         """Return edges of panels from a start to an end, within one piece.
 
-        The panels are not longer than `max_panel_length`, and one begins at every feature (a
-        position in a Gaussian).
+        A panel begins at every feature (a position in a Gaussian). Panels are not longer than
+        `max_panel_length`, divided by the refinement.
         """
         max_length = self.max_panel_length(background)
         if (end - start) * self.refinement > MAX_PANELS * max_length:
@@ -236,7 +240,7 @@ class FastFront:
 
     def _too_many_panels_error(self, background: Interval, distance: float) -> ValueError:
         """Return the error for a front that needs too many panels over a distance."""
-        longest = self.max_panel_length(background)
+        longest = self.max_panel_length(background) / self.refinement
         return ValueError(
             f"prestress: level {background.right_value!r} over a distance of {distance:g}, where"
             f" the path of the front takes more than {MAX_PANELS} panels, since each panel may be"

@@ -41,7 +41,8 @@ class SteadyFront(NamedTuple):
 def steady_front(speed: float, damping_ratio: float, springs: float, release: str) -> SteadyFront:
     """Return the steady front at a speed v > 1 (wave speeds), from the motion of single blocks.
 
-    damping_ratio is beta/dx. springs is the stiffness of the leaf springs, gamma dx^2.
+    damping_ratio is beta/dx. springs is the stiffness of the leaf springs, gamma dx^2. release is
+    the rule by which blocks are released, "total" or "elastic".
     """
     # scipy.linalg is slow to import, and only needed here.
     from scipy.linalg import expm
@@ -81,8 +82,8 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
 def _equation_of_motion(count: int, damping_ratio: float, springs: float) -> np.ndarray:
     """Return the matrix of d(state)/dt = matrix state, for all sliding blocks behind the front.
 
-    The rows and columns belong to the slips, the velocities, and the constant 1, in this order.
-    springs is the stiffness of the leaf springs, gamma dx^2.
+    The rows and columns belong to the slips of ``count`` blocks, their velocities, and the constant
+    1, in this order. springs is the stiffness of the leaf springs, gamma dx^2.
     """
     # The block ahead of block 0 is stuck and has no slip. At the last block, slip has the curvature
     # of the block before.

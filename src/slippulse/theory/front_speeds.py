@@ -168,7 +168,7 @@ def slowness_nearly_one(
 def log_prestress_in_chunks(
     excess_speed: np.ndarray, damping_ratio: np.ndarray, release: str
 ) -> np.ndarray:
-    """Return `log_prestress` of many fronts without leaf springs, chunk by chunk."""
+    """Return `log_prestress` of many fronts without leaf springs, in chunks to limit the memory."""
     values = []
     for start in range(0, excess_speed.size, FRONTS_PER_CHUNK):
         chunk = slice(start, start + FRONTS_PER_CHUNK)
@@ -218,5 +218,6 @@ def speeds_into(
 
     low, high = np.full(tau.size, min_log_excess), np.full(tau.size, MAX_LOG_EXCESS)
     guess = first_guess(tau, front_law.damping_ratios, front_law.release)
+    # The search starts inside of its bracket.
     guess = np.clip(guess, low + 0.1, high - 1.0)
     return 1.0 + np.exp(increasing_roots(excess_over_required, guess=guess, lower=low, upper=high))

@@ -81,7 +81,7 @@ def lattice_front_speed(
         gamma_dx2=gamma_dx2,
         alpha_dx=alpha_dx,
     )
-    speed = _speed_nearly_one(tau0, front_law)
+    speed = _speed_if_prestress_nearly_one(tau0, front_law)
     if speed is not None:
         return speed
     min_log_excess, least_prestress = _least_prestress(tau0, front_law)
@@ -99,7 +99,7 @@ def lattice_front_speed(
     return float(speeds_into(np.array([float(tau0)]), front_law, min_log_excess)[0])
 
 
-def _speed_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
+def _speed_if_prestress_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
     """Return the front speed into pre-stress next to 1, to first order in the leaf springs.
 
     The result is None if tau0 is not so near to 1, or if leaf springs or drag are not small.
@@ -107,6 +107,7 @@ def _speed_nearly_one(tau0: float, front_law: FrontLaw) -> float | None:
     gamma_dx2, release = front_law.gamma_dx2, front_law.release
     damping_ratio = float(front_law.damping_ratios[0])
     is_near = 1.0 - tau0 < NEARLY_ONE_DISTANCE
+    # Without damping the caller has a closed form.
     if not (is_near and damping_ratio > 0.0 and gamma_dx2 <= MAX_GAMMA_DX2):
         return None
     speed = front_speed(tau0, damping_ratio, release)
@@ -165,7 +166,7 @@ def _least_prestress(tau0: float, front_law: FrontLaw) -> tuple[float, float]:
     above it, the values of the slowest front are returned without a search.
     """
     if front_law.gamma_dx2 > MAX_GAMMA_DX2:
-        # No front outruns the waves, as if the least pre-stress were 1.
+        # No front outruns the waves, as if the least pre-stress were 1. ln(v - 1) is not used then.
         return 0.0, 1.0
     # ln(v - 1) and the pre-stress of the slowest front.
     slowest = _slowest_log_excess(front_law)
@@ -185,7 +186,7 @@ def _slowest_log_excess(front_law: FrontLaw) -> float:
     short_wave_speed = np.sqrt(4.0 + front_law.gamma_dx2) / np.pi
     slowest_speed = max(1.0, short_wave_speed)
     if front_law.alpha_dx < 0.0:
-        # Slip runs away behind a front that is slower than this speed.
+        # Slip runs away behind a front of this inverse speed, or a slower front.
         runaway_slowness = np.sqrt(1.0 - 0.25 * front_law.alpha_dx**2 / front_law.gamma_dx2)
         slowest_speed = max(slowest_speed, SPEED_MARGIN / runaway_slowness)
     return float(np.log(slowest_speed - 1.0)) if slowest_speed > 1.0 else MIN_LOG_EXCESS
@@ -201,7 +202,7 @@ def _search_least_prestress(front_law: FrontLaw, slowest: float) -> tuple[float,
     slowest_speed = 1.0 + np.exp(slowest)
     # The first grid extends far beyond the speeds that damping and leaf springs influence.
     scale_of_speeds = slowest_speed * (1.0 + damping_ratio) * (1.0 + front_law.gamma_dx2)
-    largest_increase = np.exp(np.log(scale_of_speeds) + 5.0)
+    largest_increase = np.exp(5.0) * scale_of_speeds
     speed_increase = np.geomspace(1e-6, largest_increase, SCAN_SPEEDS - 1)
     log_excess = np.append(slowest, np.log(slowest_speed - 1.0 + speed_increase))
     for _ in range(NARROW_SCANS + 1):

@@ -85,7 +85,8 @@ class Knots(NamedTuple):
         """One position in each interval in which the edge may become slower than the waves.
 
         This is where the size of its slope exceeds 1. It is possible if the steepest slope at the
-        two ends exceeds 1 when the change of the slope between the ends is added.
+        two ends exceeds 1 when the change of the slope between the ends is added. The position is
+        not in the middle, which has been checked before.
         """
         k = np.arange(self.x.size - 1)
         steepest_end = np.abs([self.slope[:-1], self.slope[1:]]).max(axis=0)
@@ -115,7 +116,8 @@ class Knots(NamedTuple):
 
         It jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
         although it is not known to be slow there. Its speed must be known at both knots, which it
-        is not at a BRIEF_SLIP. A change from faster to slower than the waves counts as a jump.
+        is not at a BRIEF_SLIP (a knot that sticks too soon after its release). A change from faster
+        to slower than the waves counts as a jump.
         """
         duration = np.abs(self.stick[k + 1] - self.stick[k])
         length = self.x[k + 1] - self.x[k]
@@ -167,7 +169,7 @@ class Knots(NamedTuple):
         cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
         slope_error = np.abs(middle.slope - cubic_slope)
         # The closer the edge comes to the wave speed (slope 1), the smaller an error of the slope
-        # must be.
+        # must be, so that the cubic remains faster than the waves.
         steepest = np.abs([self.slope[k], middle.slope, self.slope[k + 1]]).max(axis=0)
         largest_slope_error = np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
         is_cubic_right = time_error <= 2.0 * STICK_TIME_TOLERANCE * half_length

@@ -333,7 +333,8 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
     def slopes(distance: float, state: np.ndarray) -> list[float]:
         """Return the derivatives of slip and strain by the distance behind the front.
 
-        That of the strain follows from (v^2 - 1) U'' + gamma U = tau_0 - friction.
+        That of the strain follows from inertia U'' + gamma U = tau_0 - friction, where inertia is
+        v^2 - 1.
         """
         # The evaluations are counted, because a stiff law would take for ever.
         if next(evaluation_numbers) == MAX_EVALUATIONS:

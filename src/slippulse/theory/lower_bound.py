@@ -92,6 +92,7 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.in
         # Only pairs between which something may still have stuck are cut into parts.
         is_cut = x[1] - x[0] > min_length * part.scale
         is_cut &= ~stays_positive(part, x=x, velocity=velocity, time=time)
+        # Next to the first stick, the knots of the trailing edge show that nothing else has stuck.
         is_cut &= np.abs(x - first_x).max(axis=0) > FIRST_STICK_DISTANCE * part.scale
         # The ends of the parts and du/dt there, [end, pair]. The first and the last end are the two
         # positions of the pair.
@@ -114,9 +115,29 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
 
     x and velocity (du/dt) have the left positions a in row 0 and the right ones b in row 1. Both
     positions and everything in their past must slide until the time, or a front has just arrived
-    there. c is the point from which waves arrive at a and b at this time. The module docstring
-    gives the lower bounds of w = exp(alpha t/2) du/dt between a and b that follow from w at a, b
-    and c, and explains F. F is half the integral of tau exp(alpha T/2) along the front t = T(x).
+    there. Each of two conditions is sufficient: a positive lower bound of du/dt, and a positive
+    integrand in Riemann's formula for du/dt.
+    """
+    a, b = x
+    # The points of the curve where the past of a begins, and where the past of b ends.
+    ends = part.curve.crossings(0.5 * (a + b), time - a, time + b)
+    bound = _lower_bound(part, x=x, velocity=velocity, time=time, ends=ends)
+    return (bound > 0.0) | _has_positive_integrand(part, x=x, time=time, ends=ends)
+
+
+def _lower_bound(
+    part: Part,
+    x: np.ndarray,
+    velocity: np.ndarray,
+    time: float,
+    ends: tuple[Crossing, Crossing],
+) -> np.ndarray:
+    """Return a lower bound of du/dt between each pair of positions a and b; -inf if unknown.
+
+    The arguments are those of `stays_positive`, and ends are the points of the curve where the past
+    of a begins, and where the past of b ends. The bound follows from w = exp(alpha t/2) du/dt at a,
+    at b, and at the point c from which waves arrive at both (see the module docstring). It is
+    unknown if c has not slipped.
     """
     a, b = x
     curve, alpha = part.curve, part.alpha
@@ -126,36 +147,44 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     past_of_c = part.domains(middle, time_at_c)
     c_slides = curve.arrival(middle) < time_at_c
     k = past_of_c.stiffness
-    # The points of the curve where the past of a begins, and where the past of b ends.
-    a_begins, b_ends = curve.crossings(middle, time - a, time + b)
+    a_begins, b_ends = ends
     past = PastOnCurve(a_begins, past_of_c.left, past_of_c.right, b_ends)
-    # w and F are divided by exp(alpha t/2) at the time of a and b, so that w is du/dt there. At c,
-    # which is half of the distance earlier, w keeps an exponential factor.
+    # Everything is divided by exp(alpha t/2) at the time of a and b, so that w is du/dt there. At
+    # c, which is half of the distance earlier, w keeps an exponential factor.
     w_at_a, w_at_b = velocity
     w_at_c = np.exp(-0.25 * alpha * distance) * past_of_c.slip_velocity()
     exponent = np.clip(0.5 * alpha * (curve.time - time), -MAX_EXPONENT, MAX_EXPONENT)
-    half_exponential = 0.5 * np.exp(exponent)
-    # From c to a or b, F loses by negative pre-stress and gains by positive one. Densities are per
+    # The integral of this density along the curve is F of the module docstring. Densities are per
     # unit of the parameter of the curve.
-    loss_density = half_exponential * np.maximum(-curve.source, 0.0)
+    density = 0.5 * np.exp(exponent) * curve.source
     if k > 0.0:
-        gain_density = half_exponential * np.maximum(curve.source, 0.0)
-        gain = _integral_outside_past_of_c(gain_density, past)
+        gain = _integral_outside_past_of_c(np.maximum(density, 0.0), past)
         by_springs = k * distance**2 / 16.0 * (w_at_c + gain)
-        lower_bound = w_at_a + w_at_b - w_at_c - gain - by_springs
+        bound = w_at_a + w_at_b - w_at_c - gain - by_springs
     else:
-        lower_bound = w_at_c - _integral_outside_past_of_c(loss_density, past)
-    is_bound_positive = c_slides & (lower_bound > 0.0)
-    # If c has not slipped, w is an integral of tau times the Bessel function J0. It is positive if
-    # all pre-stress in the past is, and if the largest argument of J0, sqrt(k d_xi d_eta), is below
-    # its first zero. This condition is sufficient also if c has slipped. The past has no negative
-    # pre-stress if there is no loss between the points where it begins and ends.
-    loss_to_begin, loss_to_end = _integrals_from_left_end(loss_density, [a_begins, b_ends])
-    is_past_positive = loss_to_end - loss_to_begin <= 0.0
+        bound = w_at_c - _integral_outside_past_of_c(np.maximum(-density, 0.0), past)
+    return np.where(c_slides, bound, -np.inf)
+
+
+def _has_positive_integrand(
+    part: Part, x: np.ndarray, time: float, ends: tuple[Crossing, Crossing]
+) -> np.ndarray:
+    """Return a mask of the pairs of positions a and b between which du/dt is surely positive.
+
+    There du/dt is an integral of tau and the Bessel function J0 over the past. It is positive if
+    all pre-stress in the past of a and b is positive, and if the largest argument of J0,
+    sqrt(k d_xi d_eta), is below its first zero. The arguments are those of `_lower_bound`.
+    """
+    a, b = x
+    a_begins, b_ends = ends
+    curve, k = part.curve, part.gamma - 0.25 * part.alpha**2
+    # The past has no negative pre-stress if its integral does not grow from a_begins to b_ends.
+    negative_part = np.maximum(-curve.source, 0.0)
+    integral_to_begin, integral_to_end = _integrals_from_left_end(negative_part, ends)
+    is_past_positive = integral_to_end - integral_to_begin <= 0.0
     d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
     d_eta = time + b - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
-    is_kernel_positive = k * d_xi * d_eta < SQUARED_FIRST_ZERO
-    return is_bound_positive | (is_past_positive & is_kernel_positive)
+    return is_past_positive & (k * d_xi * d_eta < SQUARED_FIRST_ZERO)
 
 
 def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.ndarray:
@@ -171,9 +200,9 @@ def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.nd
 def _integrals_from_left_end(density: np.ndarray, ends: Sequence[Crossing]) -> np.ndarray:
     """Return the integrals of a density from the left end of the curve to several points on it.
 
-    Each element of ends has one point for each pair of positions a and b. The result has a row for
-    each element, and a column for each pair. The density is a function per unit of the parameter of
-    each panel, given at the nodes.
+    All elements of ends have the same number of points. The result has a row for each element, and
+    a column for each point. The density is a function per unit of the parameter of each panel,
+    given at the nodes.
     """
     panel = np.concatenate([end.panel for end in ends])
     s = np.concatenate([end.s for end in ends])

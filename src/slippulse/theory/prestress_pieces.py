@@ -128,7 +128,8 @@ def _crossings_of_value(
         return float(continued_prestress(prestress, background, np.asarray(position))) - value
 
     differences = continued_prestress(prestress, background, x) - value
-    # The far tail of a Gaussian leaves differences as small as rounding errors.
+    # The far tail of a Gaussian leaves differences as small as rounding errors. Those of a table of
+    # points are larger, because positions between its points are rounded as well.
     rounding_error = TABLE_THRESHOLD_TOLERANCE if prestress.points else ROUNDING_ERROR
     differences[np.abs(differences) <= rounding_error] = 0.0
     is_above = differences >= 0.0

@@ -151,7 +151,8 @@ def _integrate_over_left(
     growth = np.exp(rate * (x - edges[:-1, None]))
     decay_over_panel = np.exp(-rate * np.diff(edges))
     added_by_panel = decay_over_panel * ((source * growth) @ WEIGHTS)
-    # On the left of the curve, tau keeps the value at the first node, so that I is tau/rate.
+    # On the left of the curve, where tau does not matter, it is assumed to keep the value at the
+    # first node, so that I is tau/rate.
     first_tau = float(source[0, 0] / (NODES_TO_DERIVATIVES[0] @ x[0]))
     at_left_ends = [first_tau / rate]
     for panel in range(len(x) - 1):
@@ -284,7 +285,7 @@ class DependenceDomains:
             factor_of_slope -= nodes.xi_minus_g * (k * p * dh_ds)
             return kernel * factor_of_kernel + kernel_slope * factor_of_slope
 
-        return self._minus_mean_of_ends(static_solution, 0) + 0.5 * self._integrate(braces)
+        return self._minus_mean_of_ends(static_solution, order=0) + 0.5 * self._integrate(braces)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
         """Return the strain du/dx at the points (y, t).
@@ -307,7 +308,7 @@ class DependenceDomains:
         does not depend on y.
         """
         k, alpha = self.stiffness, self.alpha
-        strain = self._minus_mean_of_ends(static_solution, 1)
+        strain = self._minus_mean_of_ends(static_solution, order=1)
         if k == alpha == 0.0:
             return strain
 
@@ -317,7 +318,7 @@ class DependenceDomains:
             { -(p' dT + alpha/2 p dx) K + k p K' [(eta - h) dg - (xi - g) dh] },
 
             where d means d/ds, the derivative by the parameter of the curve. `_integrate`
-            multiplies the result by E.
+            multiplies the result by E, which does not depend on y.
             """
             p, dp_dx, dt_ds, dg_ds, dh_ds = static_solution.values_on(nodes.panels)
             kernel_slope, kernel_curvature = nodes.kernel(1), nodes.kernel(2)
@@ -334,7 +335,7 @@ class DependenceDomains:
             return z_slope * (by_kernel + by_kernel_slope) + by_bracket
 
         # The terms with alpha - k (t - T). At both ends K = 1 and K' = -1/4, because z = 0.
-        p_left, p_right = self._decayed_at_ends(static_solution, 0)
+        p_left, p_right = self._decayed_at_ends(static_solution, order=0)
         elapsed_left, elapsed_right = self._elapsed_at_ends()
         terms_with_k = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
         strain += terms_with_k - 0.25 * alpha * (p_right - p_left)
@@ -386,6 +387,7 @@ class DependenceDomains:
         function at nodes of the curve. If component_shape is (2,), it returns those of two
         functions, and the result has one row of integrals for each of them.
         """
+        # On a long curve the case of a constant kernel (1) has a faster way.
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
         integrals = np.empty((*component_shape, self.xi.size))
@@ -406,7 +408,8 @@ class DependenceDomains:
         """Return the integrals of `_integrate` for some of the points, given by their numbers.
 
         The integrand is evaluated at the nodes of all panels that one of the points needs. Then the
-        integral of each point is added up over its own panels.
+        integral of each point is added up over its own panels. component_shape is () for one
+        integrand, and (2,) for two.
         """
         curve = self.curve
         last_panel = self.right.panel[points]
@@ -575,6 +578,7 @@ def _bessel(z: np.ndarray, order: int) -> np.ndarray:
 
     For negative z, f(z) = I0(sqrt(-z)).
     """
+    # The smallest value avoids 0/0 at z = 0.
     root = np.maximum(np.sqrt(np.abs(z)), 1e-9)
     # I0 and I1 would overflow at the square root of a large positive z, where they are not needed.
     root_of_negative = np.where(z < 0.0, root, 0.0)

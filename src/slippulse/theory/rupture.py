@@ -111,6 +111,7 @@ class Rupture(ExplainsRemovedNames):
             refinement=refinement,
             alpha=rate_strengthening,
         )
+        # With a larger alpha, exponentials such as exp(alpha t) could overflow before the duration.
         check_number("rate_strengthening", rate_strengthening, at_most=MAX_DECAY / duration)
         self.prestress = prestress
         self.gamma = self.law.gamma
@@ -152,7 +153,7 @@ class Rupture(ExplainsRemovedNames):
 
     @property
     def front_ends(self) -> list[tuple[FrontEnd, FrontEnd]]:
-        """Left and right front of each connected part, where they are at the end.
+        """Last point of the left and of the right front of each connected part, with a reason.
 
         The reason is "stops" for a front that has stopped, and "duration" for one that still moves
         at the end. Any other reason says why the front was not followed further.
@@ -208,7 +209,8 @@ class Rupture(ExplainsRemovedNames):
         for part, ends in zip(self._parts, self.front_ends, strict=True):
             if part.curve.arrival(x) <= time * (1.0 + EQUALITY_TOLERANCE):
                 left, right = (part.curve.front_at(time, x, side) for side in (LEFT, RIGHT))
-                # A front that ends for any other reason is unknown after its end.
+                # A front that has stopped stays where it is. If it was not followed to the duration
+                # for any other reason, it is unknown after its end.
                 is_left_lost, is_right_lost = (
                     end.reason not in ("stops", "duration") and end.time < time for end in ends
                 )
@@ -268,6 +270,7 @@ class Rupture(ExplainsRemovedNames):
         has_stuck = np.isfinite(stick)
         slides_at_end = np.isfinite(self.release_time(x)) & ~has_stuck
         slip = self.slip(x, np.where(has_stuck, stick, self.duration))
+        # Beyond the horizon nothing is known about x.
         is_unknown = slides_at_end | self._is_beyond_horizon(x, self.duration)
         return np.where(is_unknown, np.nan, slip)
 
@@ -448,7 +451,10 @@ class Rupture(ExplainsRemovedNames):
         return float(self._limited_to_duration(np.array(time)))
 
     def _limited_to_duration(self, time: np.ndarray) -> np.ndarray:
-        """Return times, at most the duration; raise ValueError if one is later."""
+        """Return times, at most the duration; raise ValueError if one is later.
+
+        A time that is later only by rounding is set to the duration.
+        """
         if np.any(time > self._latest_time):
             latest = float(np.max(time))
             raise ValueError(f"time: {latest!r}; allowed: <= duration = {self.duration:g}")

@@ -193,8 +193,9 @@ def _first_event(x: np.ndarray, mark: float, end_was_moved: bool) -> Event:
     """Return the first event of a front on a chunk of entries: it stops, or it reaches the mark.
 
     x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
-    The front stops where dx/ds is 0. If the end of the chunk was moved to an event before, this
-    event may now lie a little beyond the end, at s > 1.
+    The front stops where dx/ds is 0. The mark is the position where the negative pre-stress ends;
+    it may be infinite. If the end of the chunk was moved to an event before, this event may now lie
+    a little beyond the end, at s > 1.
     """
     largest_s = SEARCH_LIMIT if end_was_moved else 1.0
     stops = _roots_on_chunk(NODES_TO_DERIVATIVES @ x, largest_s)
@@ -206,9 +207,9 @@ def _first_event(x: np.ndarray, mark: float, end_was_moved: bool) -> Event:
 def _ends_at_event(event: Event, move_count: int) -> bool:
     """Return True if a chunk of entries ends close enough to the event that was found on it.
 
-    move_count is the number of times that the end of the chunk was moved to an event. It is moved
-    at least once, even if the event is at the end already. If it was moved often without success,
-    a larger distance is accepted.
+    move_count is the number of times that the end of the chunk was moved to an event. If it is 0,
+    the result is False, because the chunk can end at the event only by chance. If the end was moved
+    often without success, a larger distance is accepted.
     """
     tolerance = EVENT_NEAR_END if move_count > MAX_EXACT_MOVES else EVENT_AT_END
     # The parameter s of the chunk is 1 at its end.
@@ -232,7 +233,8 @@ def _runs_back(x: np.ndarray) -> bool:
 def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
     """Return the roots of a polynomial between the start of a chunk, s = -1, and the largest s.
 
-    values are those of the polynomial at the nodes. A root at the very start is left out.
+    values are those of the polynomial at the nodes. A root at the very start is left out, because
+    it is the event at which the chunk before ended.
     """
     series = NODES_TO_SERIES @ values
     largest_coefficient = np.max(np.abs(series))
@@ -369,7 +371,11 @@ class SlowFront:
     alpha: float = 0.0
 
     def __post_init__(self) -> None:
-        """Set the stiffness k of the kernel, the end of the curve, and the size of the rupture."""
+        """Set the stiffness k of the kernel, the end of the curve, and the size of the rupture.
+
+        Tolerances are fractions of this size. It is at least |x0|, because rounding errors of
+        positions are proportional to |x0|.
+        """
         self.stiffness = self.gamma - 0.25 * self.alpha**2
         edges = self.curve.edges
         self.x0, self.t0 = float(edges[-1]), float(self.curve.edge_times[-1])
@@ -451,6 +457,8 @@ class SlowFront:
         """
         reaches_mark = event.name == "mark"
         x_end = mark if reaches_mark else float(NODES_TO_ENDS[1] @ x)
+        # A front that stops at the end of the chunk may go on later, so this is no end reason.
+        end_reason = "mark" if reaches_mark else None
         panel = self.panel_of_chunk(chunk, x, x_end)
         next_length = PANEL_LENGTH
         # A chunk that stops before the left end of its panel of entries (s = -1), but not at an
@@ -458,7 +466,6 @@ class SlowFront:
         if event.name == "none" and chunk.stop != -1.0:
             next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
         last_entry_x = self.position(Entry(chunk.panel, chunk.stop))
-        end_reason = "mark" if reaches_mark else None
         return Advance(panel, end_reason, Progress(next_length, last_entry_x))
 
     def tau(self, x: np.ndarray) -> np.ndarray:
@@ -578,13 +585,13 @@ class SlowFront:
         return float(self.curve.evaluate(name, panel, s, order)[0])
 
     def panel_until_arrival(self, entry: Entry) -> Panel | None:
-        """Return a panel for the time in which the front waits for the wave from an entry.
+        """Return a panel that leads the front from now to the arrival of the wave from an entry.
 
-        Until then only waves arrive that were skipped, because all of them together move the front
-        by a negligible distance, ``entry.skipped_motion``. None if no entry was skipped, or if the
-        wave has arrived already.
+        On it the front is moved only by waves from entries that were skipped before this one. All
+        of them together move it by the negligible distance ``entry.skipped_motion``. The result is
+        None if no entry was skipped, or if the wave has arrived already.
         """
-        # T - x does not change along the wave.
+        # The front is now at (x0, t0). T - x does not change along the wave.
         t_minus_x = self.value_at("t_minus_x", entry)
         x_end = self.x0 + entry.skipped_motion
         time_end = t_minus_x + x_end
@@ -676,7 +683,8 @@ class SlowFront:
 
         Without leaf springs (gamma = 0) the integral of tau from the entry to the front is 0. So
         if the entry moves left by a distance, the front moves right by the same distance times
-        -(tau at the entry)/(tau at the front). This ratio is kept between 0.001 and 10.
+        -(tau at the entry)/(tau at the front). This ratio is kept between 0.001 and 10. If it is
+        not positive, or tau at the front is almost 0, it is replaced by 1.
         """
         first_entry = Entry(chunk.panel, chunk.start)
         # The source is tau dx/ds.

@@ -50,7 +50,8 @@ class FrontLawPanels(NamedTuple):
 def slowness(tau, damping_ratio: float, release: str = "total") -> np.ndarray:
     """Return 1/v of a front into pre-stress tau; 0 where tau >= 1 and 1 where tau <= 0.
 
-    Its error is 1e-11, and 1e-8 next to tau = 1.
+    damping_ratio is beta/dx, and release is the rule "total" or "elastic". The error of 1/v is
+    1e-11, and 1e-8 next to tau = 1.
     """
     tau = np.clip(np.asarray(tau, dtype=float), 0.0, 1.0)
     if damping_ratio == 0.0:

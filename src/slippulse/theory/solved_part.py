@@ -66,7 +66,7 @@ class SolvedPart(PartWithEdge):
                 values[has_stuck] = at_stick[index[has_stuck]]
 
     def falling_slip(self, horizon: Callable) -> list[Point]:
-        """Return points of release (x, t): those of positions whose slip would fall while sliding.
+        """Return position and release time of each position whose slip would fall while it slides.
 
         Some positions are checked. Their slip must grow from the release to the middle of the
         sliding time, and from there to its end. This end is the stick, or the horizon if it is

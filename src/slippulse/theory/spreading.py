@@ -116,6 +116,7 @@ class Stretch:
                 _, (s,) = Curve([panel]).locate(np.array([x_of_cut]))
                 if s > -1.0:
                     kept_panels.append(panel.left_part(float(s), x_of_cut))
+        # Without panels, only the nucleation at t = 0 is left.
         time = kept_panels[-1].time_ends[1] if kept_panels else 0.0
         self.panels = turned_to_right(side, kept_panels)
         # The curves that were made from the old panels are no longer valid.

@@ -318,12 +318,13 @@ class PartWithEdge(Part):
         """Return which of the intervals k are cut into pieces, and which are halved.
 
         An interval is cut if the edge jumps or reaches the final time in it, and halved otherwise.
-        Intervals that are too short are not divided.
         """
         has_jump = knots.has_jump(k)
+        # An interval is divided if it is longer than this. Jumps are located much more accurately
+        # than the edge next to the final time or a stopped front (brief slip).
+        min_length = np.full(k.size, MIN_INTERVAL * self.scale)
         # Only one of the two knots of the interval sticks before the final time.
         reaches_end = knots.has_end_kinds(k, FASTER_THAN_WAVES, SLIDING)
-        min_length = np.full(k.size, MIN_INTERVAL * self.scale)
         min_length[reaches_end | knots.touches_brief_slip(k)] = MIN_INTERVAL_AT_END * self.scale
         min_length[has_jump] = JUMP_TOLERANCE * self._length
         is_long = knots.x[k + 1] - knots.x[k] > min_length
@@ -445,6 +446,7 @@ class PartWithEdge(Part):
             acceleration[missing] = np.where(has_secant, secant, acceleration[missing])
             step[missing] = velocity[missing] / acceleration[missing]
             time[missing] -= step[missing]
+            # A time that is far from the interpolated one may belong to another zero of du/dt.
             is_near = np.abs(time[missing] - guess[missing]) <= MAX_CORRECTION * length[missing]
             # The search also ends if the next step will be tiny. It is about the product of the
             # last two steps.

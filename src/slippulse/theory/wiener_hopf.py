@@ -94,8 +94,8 @@ def log_prestress(
 
     The arrays excess_speed, v - 1, and damping_ratio, b = beta/dx, have one element for each front.
     gamma_dx2 is g = gamma dx^2 (leaf springs), and alpha_dx is alpha dx (drag). Speeds are above 1,
-    or at least 1 with leaf springs, and at least sqrt(4 + g)/pi. Drag requires leaf springs, and is
-    above -2 sqrt(g (1 - 1/v^2)).
+    or at least 1 with leaf springs, and at least sqrt(4 + g)/pi, the speed of the shortest waves.
+    Drag requires leaf springs, and is above -2 sqrt(g (1 - 1/v^2)), below which slip runs away.
 
     Under the release rule "total" the pre-stress is tau_0 = M_+(0), and under "elastic" it is
     M_+(0)/M_+(i/(b v)), where M_+ is the Wiener-Hopf factor of the front. Both hold with leaf

@@ -88,6 +88,7 @@ def _check_profiles(scenes: Sequence[Scene]) -> None:
 
 def _largest_prestress(profile: Prestress, dx: float) -> float:
     """Return the largest pre-stress of a block, if the blocks have the spacing ``dx``."""
+    # Without bumps and tables, only the Gaussian at x = 0 exceeds the levels. A block is at x = 0.
     has_only_levels = not (profile.bumps or profile.points or profile.width is None)
     if has_only_levels:
         levels = [interval.right_value for interval in profile.intervals]
@@ -105,6 +106,7 @@ def _largest_prestress(profile: Prestress, dx: float) -> float:
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
     """Raise ValueError if the pulse has far too few blocks in every scene."""
+    # All scenes of a simulation have the same resolved_blocks.
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Computing the width takes time. Scenes with wide pulses come first, so that one is usually
     # enough. A pulse has many blocks if sqrt(gamma) dx is small and the pre-stress is large.
@@ -123,8 +125,9 @@ def _check_resolution(scenes: Sequence[Scene]) -> None:
 def _pulse_blocks(scene: Scene) -> float:
     """Return the number of blocks across the pulse of a scene.
 
-    If the stress is held, return the number of blocks across the narrowest Gaussian instead. The
-    result is infinity if there are no blocks, or if theory does not give a pulse width.
+    If the stress is held, return the number of blocks across the narrowest Gaussian instead, since
+    a pulse then has no constant width. The result is infinity if there are no blocks, or if theory
+    does not give a pulse width.
     """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
@@ -148,6 +151,7 @@ def bound_of_sweep(simulation: Mapping, chunks: int) -> Bound:
     scenes, samples = expand(with_promised_spacings(with_ends_of_lists(simulation)))
     bounds = [*map(bound_cost, scenes, samples)]
     runs = run_count(simulation) / chunks
+    # The memory of the solver is for one run, since it is freed at the end of a run.
     return Bound(
         runs=runs,
         block_updates=runs * max(bound.block_updates for bound in bounds),
@@ -166,6 +170,7 @@ def cost_problems(config: Configuration, altered: Alterations) -> list[str]:
     shipped_simulations, accuracy = all_simulations(shipped), accuracy_of(config)
     problems = []
     for name, simulation in all_simulations(config).items():
+        # The recorded changes exclude the number of chunks, and the keys of new simulations.
         is_altered = altered.changes_of[name] or shipped_simulations.get(name) != simulation
         if not (are_lattices_altered or is_altered):
             continue

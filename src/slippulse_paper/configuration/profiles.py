@@ -50,7 +50,10 @@ def with_points_of_files(overlay: Mapping[str, Any], folder: Path) -> dict[str, 
 
 
 def _with_points_in_profiles(simulation: Any, key: str, folder: Path) -> Any:
-    """Return a simulation, whose dotted key is ``key``, with the points in its list of profiles."""
+    """Return a simulation, whose dotted key is ``key``, with the points in its list of profiles.
+
+    The paths of files may be relative to ``folder``.
+    """
     if not isinstance(simulation, Mapping) or not isinstance(simulation.get("profiles"), list):
         return simulation
     profiles = [
@@ -63,7 +66,8 @@ def _with_points_in_profiles(simulation: Any, key: str, folder: Path) -> Any:
 def _with_points(profile: Any, key: str, folder: Path) -> Any:
     """Return a scene or profile, whose dotted key is ``key``, with the points of its file.
 
-    It is returned as it is if it names no file, or if it already has the points.
+    It is returned as it is if it names no file, or if it already has the points. The path of the
+    file may be relative to ``folder``.
     """
     names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
     if not names_file or "points" in profile:
@@ -80,12 +84,16 @@ def _columns_of_file(path: Path, in_si: bool) -> tuple[list[float], list[float]]
     if in_si:
         x, stress = read_in_si(path)
         return x.tolist(), stress.tolist()
-    table = read_dimensionless(path, None, None)
+    # The columns have their usual names.
+    table = read_dimensionless(path, x=None, prestress=None)
     return table.x, table.prestress
 
 
 def without_files(profiles: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Return profiles without the names of the files from which their points were read."""
+    """Return profiles without the names of the files from which their points were read.
+
+    Results depend only on the points.
+    """
     copies = [dict(profile) for profile in profiles]
     for profile in copies:
         profile.pop("file", None)
@@ -140,6 +148,7 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
     """Return the pre-stress of one expanded profile."""
     if not any(key in profile for key in TABLES):
         return Prestress(**profile)
+    # The results are cached. The cache needs an argument that cannot be altered.
     return _prestress_of_table(json.dumps(profile, sort_keys=True))
 
 

@@ -41,6 +41,7 @@ def with_promised_spacings(simulation: Mapping) -> Mapping[str, Any]:
             boundary=simulation["boundary"],
             prestress=entry.prestress,
             gamma=entry.gamma,
+            # This is the damping ratio, since simulations with beta > 0 have returned above.
             damping_ratio=entry.damping,
             release=entry.release,
             fields="fields" in simulation["record"],

@@ -94,7 +94,7 @@ def _validated(merged: Mapping) -> Configuration:
 def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
     """Return a line for each statement in ``published`` that cannot be shown on a page.
 
-    Only statements that differ from the shipped ones are checked.
+    Only statements that differ from the shipped ones are checked, since this takes time.
 
     given, shipped : the block ``published`` of the configuration, and the shipped one
     """
@@ -152,7 +152,7 @@ def _parse_texts(value: Any, path: tuple[str, ...] = ()) -> Any:
     except (YAMLError, ConfigError):
         problem = f"{dotted(path)}: {short_repr(value)}"
         raise ConfigError(f"{problem}; allowed: a plain value") from None
-    # A text that looks like a list or a mapping stays text.
+    # Snakemake has read lists and mappings already. A text that looks like one stays text.
     return value if isinstance(parsed, Mapping | list) else parsed
 
 

@@ -54,11 +54,13 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
     entry = _last_known_entry(path, config)
-    # If a value may have several forms, the path leads beyond the known entry, to one of the forms.
-    # Such a value is refused as a whole, without regard to its keys.
+    # Errors such as an unknown key are errors of a mapping, and the path leads to one of its keys.
+    # If the mapping is only one of several forms that a value may have, the known entry ends before
+    # it. The value is then refused as a whole, without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
     is_known_mapping = len(mapping_path) <= len(entry.path)
     if is_known_mapping:
+        # This is None for an error of a single value.
         line = _mapping_line(problem, config)
         if line is not None:
             return line
@@ -120,7 +122,8 @@ def _missing_line(path: Path, config: Mapping) -> str:
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2 and isinstance(path[-2], str):
-        # The name of this entry may be a misspelt name of a shipped entry, which has all keys.
+        # In a path such as simulations.NAME.boundary, NAME may be the misspelt name of a shipped
+        # entry, which has all keys.
         siblings = _last_known_entry(path[:-2], config).value
         line += spelling_hint(path[-2], {*siblings} - {path[-2]})
         if path[0] == "simulations" and path[-2].startswith("fig"):
@@ -200,7 +203,10 @@ def dereferenced(schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def words_for(schema: dict[str, Any]) -> str:
-    """Return in words which values a schema allows."""
+    """Return in words which values a schema allows.
+
+    The definition of a key may have these words (``allowed``). Otherwise they follow from the type.
+    """
     schema = dereferenced(schema)
     json_type = schema.get("type")
     if "allowed" in schema:
@@ -237,6 +243,7 @@ def _not_null(schema: Mapping) -> list[dict[str, Any]]:
 def _range(schema: Mapping) -> str:
     """Return the limits of a number in words, such as "> 0 and <= 1"."""
     limits: dict[str, str] = {}
+    # The keys are those of JSON Schema, such as exclusiveMinimum.
     for key in LIMIT_SIGNS:
         if key in schema:
             # Exponents are written without plus signs and leading zeros.

@@ -79,9 +79,10 @@ def _linear_law(alpha: float) -> Mapping:
 
 def all_simulations(config: Configuration) -> dict[str, Simulation]:
     """Return all simulations by name. Scenes are simulations of one run."""
-    dx = accuracy_of(config)["dx"]
+    preset_dx = accuracy_of(config)["dx"]
     scenes = {
-        name: scene_simulation(scene, config.model, dx) for name, scene in config.scenes.items()
+        name: scene_simulation(scene, config.model, preset_dx)
+        for name, scene in config.scenes.items()
     }
     return {**config.simulations, **scenes}
 
@@ -94,6 +95,7 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
 
     dx : block spacing of the preset, which is used unless the scene sets its own
     """
+    # A layer determines this ratio. The conversion below removes the layer.
     friction_ratio = None
     if scene.layer is not None:
         friction_ratio = scene.layer.layer(scene.boundary).friction_ratio
@@ -101,7 +103,8 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
-    # Turn the single values of the scene into the profiles and lists of a simulation.
+    # Turn the single values of the scene into the profiles and lists of a simulation, in which the
+    # keys of LISTED have lists.
     profile = {key: given.pop(key) for key in Profile.model_fields if key in given}
     extent = _extent(scene, _largest_damping_ratio(scene, model, dx), profile)
     given |= {key: [given[key]] for key in LISTED if key in given}
@@ -127,7 +130,7 @@ def _largest_damping_ratio(scene: NamedScene, model: Model, dx: float) -> float:
     return model.damping_ratio if scene.damping_ratio is None else scene.damping_ratio
 
 
-def _largest_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndarray:
+def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndarray:
     """Return an upper bound on the front speed at each value of the pre-stress.
 
     levels : values of the pre-stress
@@ -147,6 +150,9 @@ def _largest_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndarra
 def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any]) -> float:
     """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
 
+    It is the sum of the farthest distance at which slip starts, the largest front speed times the
+    duration, and an allowance for the Gaussian.
+
     damping_ratio : largest damping ratio of the scene
     profile : the keys of the scene that describe its pre-stress
     """
@@ -155,9 +161,10 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
     if scene.left is not None and scene.right is not None:
         step_levels = [level for _, level in scene.steps]
         highest = max(scene.left, scene.right, *step_levels)
-        (speed,) = _largest_front_speeds(np.array([highest]), damping_ratio)
+        (speed,) = _bounds_of_front_speeds(np.array([highest]), damping_ratio)
         reach = float(speed) * scene.duration
     else:
+        # The pre-stress is a table, so that the front speed depends on the position.
         (expanded_profile,) = ExpandedProfiles([profile])
         table = prestress_of(expanded_profile)
         # Exact speeds at all points of a table would take seconds. The speed is a convex function
@@ -165,12 +172,12 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
         table_levels = [tau for _, tau in table.points]
         highest = max([0.0, *table_levels])
         levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
-        speeds = _largest_front_speeds(levels, damping_ratio)
+        speeds = _bounds_of_front_speeds(levels, damping_ratio)
         reach = bound_front_reach(
             table,
-            table.nucleation_reach,
-            scene.duration,
-            lambda tau: np.interp(tau, levels, speeds),
+            start=table.nucleation_reach,
+            duration=scene.duration,
+            speeds_at=lambda tau: np.interp(tau, levels, speeds),
         )
     # Within three widths, the Gaussian at x = 0 raises the speed.
     width = scene.width or 0.0
@@ -183,6 +190,7 @@ def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
     If any run is refused or expensive, one at these values is, too. Of an ensemble of rough
     profiles, the first and the last seed are kept. The job checks all seeds before it simulates.
     """
+    # The number of a chunk would have no meaning for the shorter lists.
     ends = {key: value for key, value in simulation.items() if key != "chunk"}
     if "profiles" in ends:
         ends["profiles"] = ends_of_ensembles(ends["profiles"])

@@ -201,7 +201,7 @@ class Rough(Block):
     def check(self) -> None:
         """Raise ValueError if one of the levels is not possible in a rough background.
 
-        Only the first value of each other list is checked.
+        Only the first value of each other list is checked, since all combinations may be many.
         """
         lists = rough_lists(self.plain())
         first_values = {name: values[0] for name, values in lists.items()}
@@ -403,6 +403,7 @@ def _with_extra_terms(lists: bool) -> type[Physics]:
     """
     keys: dict[str, Any] = {}
     for name, term in EXTRA_TERMS.items():
+        # `LIMITS` has pydantic's name of each limit. The bound "integer" is a type, not a limit.
         limits = {LIMITS[kind]: limit for kind, limit in term.bounds.items() if kind in LIMITS}
         number: Any = int if "integer" in term.bounds else float
         value: Any = Annotated[number, Field(**limits)]
@@ -480,6 +481,7 @@ class Simulation(PhysicsOfSweep):
         require(is_consistent, "spacing.fixed: given with other keys", "no other key")
         units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
+        # These two keys use gamma, which is zero if the stress is held.
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
@@ -624,6 +626,7 @@ class NamedScene(Profile, PhysicsOfScene):
         allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
         require((converted.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
         converted |= self._tables_and_steps_in_model_units(layer)
+        # These are the quantities of the three numbers of a bump: position, amplitude and width.
         quantities = PROFILE_QUANTITIES["bumps"]
         converted["bumps"] = [
             tuple(map(layer.convert_from_si, row, quantities)) for row in self.bumps
@@ -632,22 +635,22 @@ class NamedScene(Profile, PhysicsOfScene):
 
     def _tables_and_steps_in_model_units(self, layer: Layer) -> dict[str, Any]:
         """Return the steps, points and rough background of a scene in non-dimensional units."""
-        tables: dict[str, Any] = {
-            "steps": [
-                (layer.convert_from_si(x, "length"), layer.level_from_pascal("steps", level))
-                for x, level in self.steps
-            ]
-        }
+        steps = []
+        for x, stress in self.steps:
+            # A refused stress is reported under the key.
+            level = layer.level_from_pascal(key="steps", stress=stress)
+            steps.append((layer.convert_from_si(x, "length"), level))
+        tables: dict[str, Any] = {"steps": steps}
         if self.points is not None:
-            x_in_metres, stress = np.array(self.points, dtype=float).reshape(-1, 2).T
+            x_in_metres, stresses = np.array(self.points, dtype=float).reshape(-1, 2).T
             x = layer.convert_from_si(x_in_metres, "length")
-            tau = layer.table_from_pascal("points", stress)
+            tau = layer.table_from_pascal(key="points", stress=stresses)
             tables["points"] = [*zip(x.tolist(), tau.tolist(), strict=True)]
         if self.rough is not None:
             background = self.rough.plain()
             deviation = layer.convert_from_si(background["deviation"], "stress_difference")
             converted = {
-                "level": layer.level_from_pascal("rough.level", background["level"]),
+                "level": layer.level_from_pascal(key="rough.level", stress=background["level"]),
                 "deviation": deviation,
             }
             for name in ("correlation_length", "start", "stop", "spacing"):
@@ -882,6 +885,8 @@ class Configuration(Block):
         """Raise ValueError if a scene has the name of a simulation or of another file."""
         problem = f"scenes.{name}: a simulation has the same name"
         require(name not in self.simulations, problem, "another name")
+        # Files of a scene are NAME.html, NAME.csv, NAME_numbers.csv and so on. The page index.html
+        # shows all scenes.
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
         problem = f"scenes.{name}: another file has the same name as its file"
@@ -896,7 +901,8 @@ class Configuration(Block):
 
         A reading is a number that was read off a published figure. ``key`` is its dotted key.
         """
-        # The kind of data that each measured column needs.
+        # The kind of data that each measured column needs. The trailing edge has a column for each
+        # time of `measure.trailing_times`.
         record_for = dict(RECORD_FOR)
         for time in self.measure.trailing_times:
             record_for[f"trailing_edge_{time:g}"] = "fronts"

@@ -67,6 +67,7 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
         "claims.html",
         html=markup_of(texts),
         summary=ledger.summary(),
+        # Claims that follow from others, or that are not in the paper, are not counted.
         uncounted=len(ledger.claims) - ledger.count(),
         groups=groups,
         findings=findings,
@@ -91,6 +92,7 @@ def tables_of_claim(source: str, tables: Sequence[str]) -> dict[str, dict[str, s
     """
     paths: dict[str, dict[str, str]] = {}
     for path in map(Path, tables):
+        # The name of a folder is the kind of its tables, unless TABLE_KINDS has another word.
         folder = path.parts[0]
         table_kind = TABLE_KINDS.get(folder, folder)
         paths.setdefault(path.stem, {})[table_kind] = path.as_posix()
@@ -102,7 +104,7 @@ def tables_of_claim(source: str, tables: Sequence[str]) -> dict[str, dict[str, s
 
 
 def command(tables: Mapping[str, Mapping[str, str]]) -> str:
-    """Return the command that regenerates some tables.
+    """Return the command that regenerates some tables, or all of them if these are many.
 
     tables : the result of `tables_of_claim`; empty for a claim that only tests check
     """

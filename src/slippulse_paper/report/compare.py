@@ -20,6 +20,7 @@ from .compared_numbers import (
     AGREES,
     DIFFERS,
     UNKNOWN,
+    MeasuredRuns,
     compare_numbers,
     compared_columns,
     differing_texts,
@@ -28,7 +29,7 @@ from .compared_numbers import (
     read_runs,
     with_uncertainties,
 )
-from .joined_runs import describe_run, join_runs, varying_parameters
+from .joined_runs import JoinedRuns, describe_run, join_runs, varying_parameters
 
 MAX_SHOWN_LINES = 10
 # The files that are compared beside the tables, and the line about a difference in each of them.
@@ -175,16 +176,14 @@ def _read_content(path: Path) -> dict:
 def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.DataFrame:
     """Compare one table of both folders, record what differs, and return the numbers of its runs.
 
-    Numbers of runs that are in both folders are judged. Those of altered runs (see `TableRuns`) are
-    only listed.
-
     result : the comparison in which the differences are recorded
     name : file name of the table
     """
     new_table = read_runs(new / "measurements" / name)
     old_table = read_runs(old / "measurements" / name)
+    # The columns that distinguish the runs. Messages describe a run by them.
     parameters = varying_parameters(new_table, old_table)
-    # Find the runs that are in both folders, and the other runs.
+    # Find the runs that are in both folders, pairs of altered runs, and the other runs.
     joined = join_runs(new_table, old_table)
     runs = TableRuns(
         table=Path(name).stem,
@@ -202,23 +201,35 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
         differences.append("uncertainties in one folder only")
     result.other_differences += [f"{name}: {difference}" for difference in differences]
 
-    # Compare numbers and texts.
+    # Compare the numbers and texts of the joined runs.
     columns = compared_columns(new_table, old_table)
     new_runs = with_uncertainties(new_table, columns.numbers, new_study)
     old_runs = with_uncertainties(old_table, columns.numbers, old_study)
+    numbers = _numbers_of_joined_runs(joined, new_runs, old_runs, parameters)
     new_same = new_runs.select(joined.same_runs["new"])
     old_same = old_runs.select(joined.same_runs["old"])
-    compared = compare_numbers(new_same, old_same, parameters)
-    altered = list_altered_numbers(
-        new_runs.select(joined.altered_runs["new"]),
-        old_runs.select(joined.altered_runs["old"]),
-        parameters,
-    )
     disagreements = [*differing_texts(new_same, old_same, columns.texts)]
-    disagreements += _differing_numbers(compared)
+    disagreements += _differing_numbers(numbers)
     result.disagreements += [f"{name}: {disagreement}" for disagreement in disagreements]
-    numbers = pd.concat([compared, altered])
     return numbers.assign(table=runs.table)[["table", *numbers.columns]]
+
+
+def _numbers_of_joined_runs(
+    joined: JoinedRuns, new: MeasuredRuns, old: MeasuredRuns, parameters: Sequence[str]
+) -> pd.DataFrame:
+    """Compare the numbers of runs that are the same, and list the numbers of altered runs.
+
+    The numbers of altered runs are not judged, because they are expected to differ.
+
+    new, old : all runs of the new and of the old table
+    parameters : columns that describe a run
+    """
+    new_same, old_same = new.select(joined.same_runs["new"]), old.select(joined.same_runs["old"])
+    compared = compare_numbers(new_same, old_same, parameters)
+    new_altered = new.select(joined.altered_runs["new"])
+    old_altered = old.select(joined.altered_runs["old"])
+    altered = list_altered_numbers(new_altered, old_altered, parameters)
+    return pd.concat([compared, altered])
 
 
 def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str]) -> list[str]:

@@ -167,6 +167,7 @@ def figure_names(new: Path, old: Path) -> list[str]:
 
 def figure_pair(name: str, new: Path, old: Path) -> FigurePair:
     """Return both pictures of a figure, and whether both show the same numbers."""
+    # The numbers are None if the figure is not in the folder.
     new_numbers, old_numbers = _drawn_numbers(name, new), _drawn_numbers(name, old)
     return FigurePair(
         name,
@@ -188,6 +189,7 @@ def embedded_picture(path: Path) -> Picture | None:
             picture.load()
             # A picture with a palette must be converted to full colour before it is made smaller.
             reduced = picture if picture.width <= MAX_PICTURE_WIDTH else picture.convert("RGB")
+            # The thumbnail keeps the proportions, and only its width is limited.
             reduced.thumbnail((MAX_PICTURE_WIDTH, 10 * MAX_PICTURE_WIDTH))
             with_palette = reduced.convert("RGB").quantize(
                 PICTURE_COLOURS, dither=Image.Dither.NONE

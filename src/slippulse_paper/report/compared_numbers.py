@@ -60,14 +60,16 @@ class ComparedColumns:
 def compared_columns(new: pd.DataFrame, old: pd.DataFrame) -> ComparedColumns:
     """Return the columns that are compared: measured numbers, and texts.
 
-    A column that has text in one of the tables counts as text.
+    A column that has text in one of the tables counts as text. Parameters are not compared.
     """
     numbers, texts = [], []
     for name in columns_in_both(new, old, new.columns):
+        # The runs were paired by the parameters of RUN_COLUMNS.
         if name in RUN_COLUMNS:
             continue
         if not (is_numeric_dtype(new[name]) and is_numeric_dtype(old[name])):
             texts.append(name)
+        # Paired runs may have different lattices.
         elif name not in LATTICE_COLUMNS:
             numbers.append(name)
     return ComparedColumns(numbers, texts)
@@ -110,9 +112,10 @@ def compare_numbers(
     only one of the two runs has a number, it counts as different on equal lattices, and is left out
     otherwise.
 
+    new, old : the paired runs, in the same order
     parameters : columns that describe a run
     """
-    # The column allowed has the allowed difference by the uncertainties.
+    # The column "allowed" has the largest difference that the uncertainties allow.
     numbers = _list_numbers(new, old, parameters)
     # A run has one row for each of its numbers.
     is_same_lattice = np.repeat(_is_same_lattice(new, old), len(new.numbers.columns))

@@ -88,11 +88,14 @@ def write_pdf(text: str, manuscript: Path, output: str | Path) -> None:
     """Write Markdown as a PDF with vector figures.
 
     Raises ValueError with the message of Typst if Typst cannot make the PDF.
+
+    manuscript : the folder with the metadata and the bibliography
     """
     # In a PDF, a link to another document leads to the PDF of that document.
     text = re.sub(r"\((\w+)\.html(?:#[\w-]*)?\)", r"(\1.pdf)", text)
     options = ["--default-image-extension=pdf"]
     source = _pandoc(text, manuscript, TEMPLATES / "report.typ", "typst", options)
+    # The alternative text of each figure, by the name of the figure.
     alternatives = dict(ALTERNATIVE_TEXT.findall(text))
 
     def add_alternative_text(image: re.Match) -> str:

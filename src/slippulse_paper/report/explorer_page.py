@@ -92,7 +92,7 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     is_shown &= table["boundary"] == "displacement"
     rows = []
     for run in table[is_shown].to_dict("records"):
-        if not _is_plain(run):
+        if not _has_coulomb_and_equal_levels(run):
             continue
         # Only a steady pulse has a slip that the page can compare.
         if run.get("pulse_state", "steady") != "steady":
@@ -103,7 +103,7 @@ def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     return rows
 
 
-def _is_plain(run: Mapping) -> bool:
+def _has_coulomb_and_equal_levels(run: Mapping) -> bool:
     """Return True if a run has Coulomb friction and a Gaussian on equal levels.
 
     A run with a table of pre-stress (points) has no levels.

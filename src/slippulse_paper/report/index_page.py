@@ -5,11 +5,11 @@ scenes and the provenance. All links are relative, and the page loads nothing fr
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from PIL import Image
 
@@ -33,79 +33,96 @@ from .texts import (
 FIGURE_SCALE = 0.4
 
 
-def index_page(results: Path, texts: Mapping, galleries: Mapping, scenes: Mapping[str, str]) -> str:
+class _Texts(NamedTuple):
+    """The texts of the page in Markdown, with numbers in place of their expressions.
+
+    paragraphs : the question of the page, its answer, and a text about accuracy
+    glossary : pairs of a term and its meaning
+    rows : statements of the paper with their verdicts
+    captions : the caption of each figure, by the name of the figure
+    """
+
+    paragraphs: Mapping[str, str]
+    glossary: Sequence[tuple[str, str]]
+    rows: Sequence[StatementRow]
+    captions: Mapping[str, Caption]
+
+
+def index_page(
+    results: Path, text_files: Mapping, galleries: Mapping, scenes: Mapping[str, str]
+) -> str:
     """Return the page as HTML, with links only to files that exist.
 
-    texts : paths of the captions, the summary and the errata
+    text_files : paths of the captions, the summary and the errata
     galleries : names of figures by heading
     scenes : title of each scene by name
     """
     provenance = _read_json(results / "provenance.json")
     ledger = Ledger(_read_json(results / "claims.json"), _read_json(results / "findings.json"))
-    names = _names_in_texts(provenance["config"], ledger, read_errata(texts["errata"]))
-    # This function returns a text with the values of the expressions in it.
-    evaluated = partial(fill, names=names)
-    summary = read_text(texts["summary"])
-    # The first line of the summary is enough to answer the question.
-    first_line = judged_lines(summary, ledger, evaluated)[0]
-    paragraphs = {
-        "question": evaluated(summary["question"]),
-        "accuracy": evaluated(summary["accuracy"]),
-        "answer": answer([first_line]),
-    }
-    # Rows of the table of the paper's statements and their verdicts.
-    rows = statement_rows(summary, ledger, evaluated)
-    glossary = [(evaluated(word["term"]), evaluated(word["meaning"])) for word in summary["words"]]
-    captions = read_captions(texts["captions"], evaluated)
-    figure_names = chain.from_iterable(galleries.values())
-    caption_by_figure = {name: _caption_of(name, captions) for name in figure_names}
+    figures = [*chain.from_iterable(galleries.values())]
+    texts = _read_texts(text_files, figures, provenance["config"], ledger)
     return page(
         "index.html",
         altered=provenance["overlay"],
-        texts=paragraphs,
-        rows=rows,
-        words=glossary,
-        figures=caption_by_figure,
-        sizes={name: _shown_size(results / f"figures/{name}.png") for name in caption_by_figure},
+        texts=texts.paragraphs,
+        rows=texts.rows,
+        words=texts.glossary,
+        figures=texts.captions,
+        sizes={name: _shown_size(results / f"figures/{name}.png") for name in figures},
         galleries=galleries,
         scenes=scenes,
         exists=lambda path: (results / path).exists(),
         facts=provenance,
-        html=_texts_as_html(paragraphs, glossary, rows, caption_by_figure.values()),
+        html=_texts_as_html(texts),
         summary=ledger.summary(),
         signs=SIGNS,
     )
 
 
-def _texts_as_html(
-    paragraphs: Mapping[str, str],
-    glossary: Iterable[tuple[str, str]],
-    rows: Iterable[StatementRow],
-    captions: Iterable[Caption],
-) -> Mapping[str, str]:
-    """Return the HTML of each text of the page, by the text in Markdown.
+def _read_texts(paths: Mapping, figures: Iterable[str], config: Mapping, ledger: Ledger) -> _Texts:
+    """Read the texts of the page, and put numbers in place of their expressions.
 
-    All texts are collected first, because one call converts all of them.
-
-    glossary : pairs of a term and its meaning
+    paths : paths of the captions, the summary and the errata
+    figures : names of the figures on the page
     """
-    markdown = [*paragraphs.values(), *chain.from_iterable(glossary)]
-    for row in rows:
-        markdown += [row.statement, row.number]
-    for caption in captions:
-        markdown += [caption.finding, caption.caption]
-    return markup_of(markdown)
-
-
-def _names_in_texts(config: Mapping, ledger: Ledger, misprints: list) -> dict[str, object]:
-    """Return the values and functions that the expressions in the texts may use, by name."""
-    return {
+    # The values and functions that the expressions may use.
+    names = {
         "claim": ledger,
         "found": ledger.found,
         "config": config,
-        "misprints": misprints,
+        "misprints": read_errata(paths["errata"]),
         "runs": partial(parameters, config),
     }
+    evaluated = partial(fill, names=names)
+    summary = read_text(paths["summary"])
+    captions = read_captions(paths["captions"], evaluated)
+    # The first line of the summary is enough to answer the question.
+    first_line = judged_lines(summary, ledger, evaluated)[0]
+    return _Texts(
+        paragraphs={
+            "question": evaluated(summary["question"]),
+            "accuracy": evaluated(summary["accuracy"]),
+            "answer": answer([first_line]),
+        },
+        glossary=[
+            (evaluated(word["term"]), evaluated(word["meaning"])) for word in summary["words"]
+        ],
+        rows=statement_rows(summary, ledger, evaluated),
+        captions={name: _caption_of(name, captions) for name in figures},
+    )
+
+
+def _texts_as_html(texts: _Texts) -> Mapping[str, str]:
+    """Return the HTML of each text of the page, by the text in Markdown.
+
+    All texts are collected first, because one call converts all of them.
+    """
+    markdown = [*texts.paragraphs.values(), *chain.from_iterable(texts.glossary)]
+    for row in texts.rows:
+        markdown += [row.statement, row.number]
+    for caption in texts.captions.values():
+        markdown += [caption.finding, caption.caption]
+    return markup_of(markdown)
 
 
 def _caption_of(figure: str, captions: Mapping[str, Caption]) -> Caption:

@@ -51,8 +51,7 @@ class JoinedRuns:
 def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     """Join the runs that are the same, and then runs that differ only in altered parameters.
 
-    Of the same runs, those on equal lattices are joined first. A parameter is altered if it has one
-    value in all remaining new runs, and another value in all remaining old runs.
+    Of the same runs, those on equal lattices are joined first.
     """
     parameters = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS])
     lattice = columns_in_both(new, old, LATTICE_COLUMNS)
@@ -65,17 +64,7 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     unpaired_new = unpaired_new.drop(on_other_lattices["new"])
     unpaired_old = unpaired_old.drop(on_other_lattices["old"])
 
-    # Look for altered parameters among the remaining runs. A parameter has changed if none of its
-    # values occurs in both tables.
-    is_kept = {name: unpaired_new[name].isin(unpaired_old[name]).any() for name in parameters}
-    changed = [name for name in parameters if not is_kept[name]]
-    altered_parameters = [name for name in changed if name not in DERIVED_COLUMNS]
-    if is_one_alteration(unpaired_new, unpaired_old, altered_parameters):
-        unchanged = [name for name in parameters if is_kept[name]]
-        altered_runs = pair_rows(unpaired_new, unpaired_old, unchanged)
-    else:
-        altered_runs = pd.DataFrame({"new": [], "old": []}, dtype=int)
-
+    altered_parameters, altered_runs = _pair_altered_runs(unpaired_new, unpaired_old, parameters)
     same_runs = pd.concat([on_equal_lattices, on_other_lattices])
     return JoinedRuns(
         same_runs=same_runs.sort_values("new", kind="stable"),
@@ -86,12 +75,34 @@ def join_runs(new: pd.DataFrame, old: pd.DataFrame) -> JoinedRuns:
     )
 
 
+def _pair_altered_runs(
+    new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]
+) -> tuple[list[str], pd.DataFrame]:
+    """Return the altered parameters, and pairs of runs that differ only in them.
+
+    A parameter is altered if it has one value in all new runs, and another value in all old runs.
+    If a parameter has changed in another way, there are no pairs.
+    """
+    # A parameter has changed if none of its values occurs in both tables.
+    is_kept = {name: new[name].isin(old[name]).any() for name in parameters}
+    changed = [name for name in parameters if not is_kept[name]]
+    # Derived parameters count only if no other one has changed.
+    independent = [name for name in changed if name not in DERIVED_COLUMNS]
+    altered_parameters = independent or changed
+    if have_one_value_in_each_table(new, old, altered_parameters):
+        unchanged = [name for name in parameters if is_kept[name]]
+        return altered_parameters, pair_rows(new, old, unchanged)
+    return altered_parameters, pd.DataFrame({"new": [], "old": []}, dtype=int)
+
+
 def columns_in_both(new: pd.DataFrame, old: pd.DataFrame, names: Iterable[str]) -> list[str]:
     """Return the names that are columns of both tables."""
     return [name for name in names if name in new and name in old]
 
 
-def is_one_alteration(new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]) -> bool:
+def have_one_value_in_each_table(
+    new: pd.DataFrame, old: pd.DataFrame, parameters: list[str]
+) -> bool:
     """Return True if each parameter has one value in all new runs and one in all old runs.
 
     If a parameter had several values, it would be unclear which runs belong together. Returns False
@@ -108,7 +119,7 @@ def pair_rows(new: pd.DataFrame, old: pd.DataFrame, columns: list[str]) -> pd.Da
     """Pair the rows of two tables that have equal values in some columns.
 
     Returns the labels of the paired rows in the columns new and old. Several equal rows of one
-    table are paired in their order.
+    table are paired in their order: their keys have the numbers 0, 1, ... as "occurrence".
     """
     new_keys = _row_keys(new, columns).assign(new=new.index)
     old_keys = _row_keys(old, columns).assign(old=old.index)
@@ -143,6 +154,7 @@ def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
     """
     names = list(names)
     text = describe_run(new, names)
+    # As texts, two values that are NaN are equal.
     differing = [name for name in names if str(new[name]) != str(old[name])]
     return f"{text} (old: {describe_run(old, differing)})" if differing else text
 

@@ -98,7 +98,8 @@ class Gallery:
         if name not in self.numbers:
             return ""
         title = name.replace("_", " ")
-        caption = self.captions.get(name, Caption(title, title, "", ""))
+        without_texts = Caption(title=title, alt=title, finding="", caption="")
+        caption = self.captions.get(name, without_texts)
         label = self._label(name)
         text = f"**{label}. {caption.title}.** {caption.finding} {caption.caption}".strip()
         alt = caption.alt.replace("'", "\N{RIGHT SINGLE QUOTATION MARK}")

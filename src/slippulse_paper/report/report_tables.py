@@ -166,6 +166,7 @@ def tolerances(ledger: Ledger) -> str:
     ids_by_cells: dict[tuple[str, str, str], list[str]] = {}
     for claim in ledger:
         tolerance = setting(claim.tolerance)
+        # Claims about a power law also have a tolerance for its exponent.
         exponent = getattr(claim, "tolerance_exponent", None)
         if exponent:
             tolerance += f"; exponent {setting(exponent)}"
@@ -231,7 +232,11 @@ def found_list(ledger: Ledger) -> str:
 
 
 def sentence_counts(sentences: Sequence[Mapping]) -> str:
-    """Return a table of how many sentences are tested, and for each reason how many are not."""
+    """Return a table of how many sentences are tested, and for each reason how many are not.
+
+    The last row has the number of all sentences.
+    """
+    # One of the reasons is "tested". `coverage` adds the key "all" for the total.
     titles = REASONS | {"all": "all"}
     rows = [(titles[reason], count) for reason, count in coverage(sentences).items()]
     columns = [text_column("sentences", 60), number_column("how many", 15)]
@@ -239,7 +244,10 @@ def sentence_counts(sentences: Sequence[Mapping]) -> str:
 
 
 def tested_sentences(sentences: Sequence[Mapping], entries: Mapping[str, Mapping]) -> str:
-    """Return a table of the tested sentences, with their place in the paper and their claims."""
+    """Return a table of the tested sentences, with their place in the paper and their claims.
+
+    entries : all claims, by their id
+    """
     rows = []
     for sentence in sentences:
         claims = claims_of(entries, sentence)
@@ -276,6 +284,8 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
     """Return a table of the observed order and the relative uncertainty of STUDIED_QUANTITIES.
+
+    The column "runs" counts the runs with a known uncertainty, or all runs if there are none.
 
     tables : tables by name; those of grid studies have names such as "uncertainties/NAME"
     """
@@ -339,7 +349,7 @@ def layer_runs(study: pd.DataFrame) -> str:
     rows = []
     for part, title in LAYER_PARTS.items():
         on_all_grids = study[study["part"] == part].sort_values("cells", kind="stable")
-        # These columns identify a run. The row on its finest grid comes last.
+        # These columns identify a run (weakening is d_c). The row on its finest grid comes last.
         finest = on_all_grids.drop_duplicates(
             ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
         )

@@ -15,7 +15,7 @@ from slippulse.model.recorded_law import read_recorded_law
 from slippulse.model.scene import EXTRA_TERMS
 from slippulse.model.si_quantities import QUANTITIES
 
-from ..text.numerals import MISSING, number, rounded, setting, with_uncertainty
+from ..text.numerals import number, rounded, setting, with_uncertainty
 from .html import page
 
 # Attributes of a run that the page shows, in this order.
@@ -38,7 +38,8 @@ def scene_page(
     """Return the page as HTML, which contains the figure.
 
     png : path of the figure
-    numbers : table from `main_numbers.scene_numbers` or `main_numbers.numbers_in_si`
+    numbers : table from `main_numbers.scene_numbers` or `main_numbers.numbers_in_si`; the column
+        "promised", which is optional, has the accuracy that the configuration requires
     attributes : parameters of the run, in units of the model
     note : which values of the configuration were altered; empty if none
     layer : if given, the page shows all numbers in SI units
@@ -65,6 +66,7 @@ def _parameters(attributes: Mapping, layer: Layer | None) -> dict[str, Any]:
     if "steps_and_bumps" in shown:
         shown["steps_and_bumps"] = _profile_text(attributes, layer)
     if layer is not None:
+        # QUANTITIES has the parameters with a unit.
         numbers_in_si = layer.numbers_to_si(attributes)
         for key in shown.keys() & QUANTITIES.keys():
             shown[key] = _with_unit(numbers_in_si[key], QUANTITIES[key])
@@ -147,16 +149,17 @@ def _number_cells(row) -> dict[str, str]:
 
     row : a row of the table of numbers; the columns promised, kept, unit and paper may be missing
     """
-    promised = getattr(row, "promised", math.nan)
+    promised, paper = getattr(row, "promised", math.nan), getattr(row, "paper", math.nan)
     promise = "not covered"
     if math.isfinite(promised):
+        # The column has the texts true and false, or booleans if it was read from a file.
         outcome = "kept" if str(row.kept).lower() == "true" else "missed"
         promise = f"{promised:g}, {outcome}"
     return {
         "label": row.label,
         "measured": with_uncertainty(row.value, row.uncertainty, unknown="(?)"),
         "unit": getattr(row, "unit", ""),
-        "paper": number(getattr(row, "paper", math.nan), 5).replace(MISSING, NO_NUMBER),
+        "paper": NO_NUMBER if math.isnan(paper) else number(paper, 5),
         "theory": number(row.theory, 5) if math.isfinite(row.theory) else NO_NUMBER,
         "difference": _difference_text(row.value, row.theory),
         "promise": promise,

@@ -137,14 +137,16 @@ def parameters(config: Mapping, name: str) -> str:
 def _profile_values(simulation: Mapping, key: str) -> list:
     """Return the distinct values that the profiles of a simulation have for a key.
 
+    A width of None, which stands for a profile without a Gaussian, is left out.
+
     key : a key of the pre-stress, such as "left"
     """
     values: list = []
     # A simulation without the key "profiles" is itself the only profile.
     for profile in simulation.get("profiles") or [simulation]:
-        given = profile.get(key, [])
+        given = profile.get(key)
         values += given if isinstance(given, list) else [given]
-    return [*dict.fromkeys(values)]
+    return [value for value in dict.fromkeys(values) if value is not None]
 
 
 def _values_text(values: Sequence[float]) -> str:
@@ -166,6 +168,8 @@ def statement_rows(
     summary: Mapping, ledger: Ledger, fill: Callable[[str], str]
 ) -> list[StatementRow]:
     """Return the rows of the table on the index page, with their expressions evaluated.
+
+    A row that names several claims shows the one with the worst verdict.
 
     summary : content of manuscript/summary.yaml
     """
@@ -268,6 +272,7 @@ def answer(lines: Sequence[Line]) -> str:
     first_line, *other_lines = lines
     sentences = [_opening(first_line)]
     for group in SENTENCES:
+        # Each entry of a group has the words for one verdict.
         clauses = []
         for words in group:
             judged = [line for line in other_lines if line.claim.verdict == words.verdict]

@@ -85,7 +85,7 @@ def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
         path of the table that is written
     """
     chunks = _read_as_text(paths)
-    # The column `point` has the number of the run in the chunk, from 0.
+    # The column `point` has the number of the run in the chunk, from 0. Every run has rows.
     counts = [int(chunk["point"].astype(int).max()) + 1 for chunk in chunks]
     run_numbers = _run_numbers(paths, counts)
     measured = load_table(finest)

@@ -40,7 +40,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
     The files ``studies`` contain the table of the study `accuracy_cost`.
     """
     study = load_inputs(files).tables["accuracy_cost"]
-    # These rows have the errors of one setting each. The other rows are for another panel.
+    # These rows are for the trade-off between time and errors. Each has all errors of one setting.
     errors_by_setting = study[study["part"] == "trade"]
     save_table(timed(errors_by_setting), outputs["csv"])
     with house_style():
@@ -67,7 +67,7 @@ def timed(errors_by_setting: pd.DataFrame) -> pd.DataFrame:
         setting.run_pulse(0.0)
     crack_seconds = [shortest_seconds(setting.run_crack) for setting in settings]
     pulse_seconds = [_mean_pulse_seconds(setting) for setting in settings]
-    # The function gives the column for the seconds of each error, crack or pulse.
+    # `error_rows` takes the seconds of each error from the column "crack" or the column "pulse".
     with_seconds = errors_by_setting.assign(crack=crack_seconds, pulse=pulse_seconds)
     return error_rows(with_seconds, "seconds", cost_column_of=_simulation_with_quantity)
 

@@ -41,7 +41,8 @@ def predictions(
 ) -> pd.DataFrame:
     """Return a table of the predictions on some topics, with one row for each run.
 
-    A number is NaN if the theory does not cover the friction law or an extra term of the run.
+    A number is NaN if the theory does not cover the friction law or an extra term of the run. The
+    settings are those of `run`.
     """
     tables = []
     for topic in topics:
