@@ -221,6 +221,7 @@ def test_lattices_a_tenth_away_from_the_line_where_pulses_cease_to_stick_are_on_
     # dx = 0.05, for 1 % at 0.025 and never at 0.0125.
     late = select(table, role="arrest", dx=0.025, rate_strengthening=0.5).query("time > 20")
     limit = select(table, role="asymptote")
+    assert not late["gamma"].any() and not limit["gamma"].any()
     late = late.merge(limit, on=["rate_strengthening", "time"], suffixes=("", "_limit"))
     assert (late["largest_velocity"] / late["largest_velocity_limit"]).between(0.8, 1.1).all()
 

@@ -68,6 +68,7 @@ def _draw_layer(axes: Axes, strip_width: float) -> None:
     """
     middle = 0.5 * LAYER_LENGTH
     layer_look: Look = {"facecolor": "#e6edf4", "edgecolor": BLACK, "linewidth": 0.8}
+    # The digits 22 are the opacity of the face.
     strip_look: Look = {"facecolor": RED + "22", "edgecolor": RED, "linewidth": 1.4, "gid": "strip"}
     axes.add_patch(Rectangle((0.0, -RIGID_DEPTH), LAYER_LENGTH, RIGID_DEPTH, **HATCHED_LOOK))
     axes.add_patch(Rectangle((0.0, 0.0), LAYER_LENGTH, 1.0, **layer_look))

@@ -73,6 +73,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for name, level_count in LEVEL_COUNTS.items():
         runs = tables[name][columns]
         parts.append(runs[runs["left"] == runs["right"]].assign(role="symmetric"))
+        # The final regime does not depend on gamma, so runs at one gamma are enough for the planes.
         runs = runs[runs["gamma"] == runs["gamma"].max()]
         has_drawn_left = runs["left"].isin(spread_values(runs["left"], level_count))
         has_drawn_right = runs["right"].isin(spread_values(runs["right"], level_count))
@@ -81,7 +82,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw the final regimes, and on the right the velocity profiles of some of them, with numbers.
+    """Draw the final regimes, and on the right numbered velocity profiles of some of them (d).
 
     Panel a shows runs with equal pre-stress on both sides, as a function of tau_0 and gamma: above
     for the displacement boundary, and below for the stress boundary, where gamma is 0. Panels b and
@@ -213,6 +214,7 @@ def draw_runs(axes: Axes, runs: pd.DataFrame, y_column: str) -> None:
     """
     for run in runs.itertuples():
         colour, _ = LOOKS[run.regime]
+        # If theory does not decide the regime, exact_regime is not the name of a regime.
         differs_from_theory = run.exact_regime in LOOKS and run.exact_regime != run.regime
         look = MARK | {"markerfacecolor": "white" if differs_from_theory else colour}
         marker = "x" if isinstance(run.run_flags, str) else "o"
@@ -220,7 +222,10 @@ def draw_runs(axes: Axes, runs: pd.DataFrame, y_column: str) -> None:
 
 
 def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
-    """Draw one panel for each profile: slip velocity and pre-stress as functions of position."""
+    """Draw one panel for each profile: slip velocity and pre-stress as functions of position.
+
+    profiles : points of each profile; all profiles are at the same time
+    """
     strips = figure.subplots(len(profiles), 1, sharex=True)
     panel_letter(strips[0], "d")
     # All panels show the positions from -end to end.
@@ -235,6 +240,7 @@ def draw_profiles(figure: SubFigure, profiles: list[pd.DataFrame]) -> None:
 def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
     """Draw the slip velocity of one profile divided by its largest value, and its pre-stress.
 
+    rows : points of the profile. All have the boundary, levels and regime of its scene
     number : number of the profile, as text
     end : the pre-stress is drawn from the position -end to the position end
     """
@@ -243,9 +249,9 @@ def draw_strip(axes: Axes, rows: pd.DataFrame, number: str, end: float) -> None:
     relative_velocity = rows["slip_velocity"] / rows["slip_velocity"].max()
     axes.fill_between(rows["x"], relative_velocity, color=tint(colour), linewidth=0.0)
     axes.plot(rows["x"], relative_velocity, color=colour)
-    gamma = int(first["boundary"] == "displacement")
+    capital_gamma = int(first["boundary"] == "displacement")
     levels = f"{setting(first['left'])}, {setting(first['right'])}"
-    label = rf"{number} $\Gamma = {gamma}$, $\tau_0$ = {levels}"
+    label = rf"{number} $\Gamma = {capital_gamma}$, $\tau_0$ = {levels}"
     axes.text(0.02, 1.0, label, transform=axes.transAxes, va="top")
     # The pre-stress stands above the velocity, on a scale of its own: its value 0 is at the height
     # zero, and its value 1 is higher by unit_height.

@@ -114,6 +114,8 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_transition(axes, rows_by_role)
         style.panel_letter(profile, letter)
         transition = "first stick"
+        # Under a stress boundary, the transition is when the left front has covered this fraction
+        # of its way to the balance position x_minus.
         if "fraction" in rows_by_role:
             percent = 100.0 * rows_by_role["fraction"]["value"].iloc[0]
             transition = rf"left front at {percent:g} % of its way to $x_-$"

@@ -90,6 +90,8 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:
     """Add an inset with the pre-stress of a few runs: some levels, with the narrowest Gaussian.
 
+    The pre-stress with another width has the same shape.
+
     level_column : name of the level, tau_0 or left, which has a colour scale
     """
     has_drawn_level = runs["left"].isin(spread_values(runs["left"], LINE_COUNT))

@@ -60,8 +60,9 @@ TITLES = {
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return one row for each panel, instant and block of the first run of each sweep.
 
-    The column x has the position of a block before it slips. The column scale has the factor by
-    which slip is multiplied in the drawing.
+    The column x has the position of a block before it slips, and arresting_block marks the block
+    that stops the left front. The column scale has the factor by which slip is multiplied in the
+    drawing.
     """
     panels = []
     for boundary in ROW_DISTANCES:
@@ -69,7 +70,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         rows = block_states(run)
         rows["scale"] = displacement_scale(rows)
         # Only under a stress boundary, a block stops the left front.
-        rows["arresting_block"] = (rows["x"] == arresting_block(run)) & (boundary == "stress")
+        stops_front = rows["x"] == position_of_arresting_block(run)
+        rows["arresting_block"] = stops_front & (boundary == "stress")
         parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
         panels.append(rows.assign(panel=boundary, **parameters))
     return pd.concat(panels, ignore_index=True)
@@ -114,7 +116,7 @@ def displacement_scale(rows: pd.DataFrame) -> float:
     return min(largest_for_blocks, largest_for_springs)
 
 
-def arresting_block(run: xr.Dataset) -> float:
+def position_of_arresting_block(run: xr.Dataset) -> float:
     """Return the position of the first block on the left that was never released."""
     is_released = np.isfinite(run["release_time"].values)
     leftmost_released = run["x"].values[is_released].min()
@@ -129,7 +131,7 @@ def view(run: xr.Dataset) -> tuple[float, float]:
     """
     if run.attrs["left"] == run.attrs["right"]:
         return -0.5 * VIEW_WIDTH, 0.5 * VIEW_WIDTH
-    first = arresting_block(run) - BLOCKS_BEYOND_ARREST
+    first = position_of_arresting_block(run) - BLOCKS_BEYOND_ARREST
     return first, first + VIEW_WIDTH
 
 
@@ -186,7 +188,8 @@ def draw(table: pd.DataFrame) -> Figure:
     """
     row_counts = table.groupby("panel")["row"].nunique()
     # Each panel has a strip with the pre-stress, and below it axes with the rows of blocks. These
-    # are their heights in inches, from top to bottom.
+    # are their heights in inches, from top to bottom. The figure also has room for titles, axis
+    # labels and the legend.
     heights: list[float] = []
     for name, row_distance in ROW_DISTANCES.items():
         rows_height = SPACING_HEIGHT * (row_distance * row_counts[name] + 0.12)

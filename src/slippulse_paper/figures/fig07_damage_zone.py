@@ -43,7 +43,11 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_curves(axes: Axes, curves: pd.DataFrame) -> None:
-    """Draw the stress drop for each thickness of the host rock, with a label at the right end."""
+    """Draw the stress drop for each thickness of the host rock, with a label at the right end.
+
+    A dashed line shows the limit of rigid host rock, with which the displacement is imposed at the
+    top of the damage zone (y = H).
+    """
     groups = curves.groupby("thickness_ratio")
     colours = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.64, groups.ngroups))
     for colour, (thickness, curve) in zip(colours, groups, strict=True):
@@ -62,7 +66,7 @@ def draw_curves(axes: Axes, curves: pd.DataFrame) -> None:
 def draw_sketch(axes: Axes, before: pd.DataFrame, after: pd.DataFrame) -> None:
     """Draw the damage zone under host rock, and the displacement as a function of height.
 
-    before, after : displacement before and after slip, by height y
+    before, after : displacement before and after slip, from the fault (y = 0) upwards
     """
     top = float(after["y"].max())
     draw_layers(axes, top)

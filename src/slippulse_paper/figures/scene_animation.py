@@ -93,6 +93,7 @@ def _with_unit(label: str, unit: str) -> str:
 def _drawn_values(values: np.ndarray, quantity: str, layer: Layer | None) -> tuple[np.ndarray, str]:
     """Return values in the drawn unit, and this unit as text.
 
+    quantity : physical quantity of the values, such as "length"
     layer : the layer in SI units; if it is None, values have no unit, and the text is empty
     """
     if layer is None:

@@ -59,7 +59,7 @@ def draw_locking(axes: Axes, rows: pd.DataFrame) -> None:
     fixed, localised = (rows[rows["scheme"] == scheme] for scheme in ("fixed_step", "localised"))
     steps = np.linspace(fixed["step"].min(), fixed["step"].max(), 400)
     low, high = float(fixed["front_speed"].min()) - 0.03, float(fixed["front_speed"].max()) + 0.03
-    # One row for each step dt/dx, and one column for each n.
+    # One row for each step dt/dx, and one column for each n that may give a speed in the panel.
     locked_speeds = 1.0 / np.outer(steps, np.arange(1, 12))
     is_shown = (locked_speeds > low) & (locked_speeds < high)
     shown_speeds = np.where(is_shown, locked_speeds, np.nan)

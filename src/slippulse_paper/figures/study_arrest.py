@@ -83,6 +83,7 @@ def draw(table: pd.DataFrame) -> Figure:
     stated fraction of its path.
     """
     figure, (path_axes, spacing_axes) = style.new_panels(PAGE_WIDTH, 3.1, "ab")
+    # Exact paths go on for ever. They are drawn a little longer than the paths on lattices.
     end = float(table.loc[table["role"] == "path", "time"].max()) * 1.08
     for (ratio, rows), marker in zip(table.groupby("damping_ratio"), MARKERS, strict=False):
         # The colour scale is logarithmic and has no colour for 0.
@@ -94,6 +95,7 @@ def draw(table: pd.DataFrame) -> Figure:
         label = f"$b$ = {ratio:g}"
         path_axes.plot(last["time"], last["to_go"], marker, label=label, color=colour)
         draw_times(spacing_axes, rows_by_role["run"].sort_values("dx"), marker, colour)
+    # All runs have the same fraction, and the other rows have none.
     fraction = table["fraction"].max()
     handles = [*style.legend_handles([path_axes]), *legend_entries(fraction)]
     style.legend_below(figure, handles, columns=5)

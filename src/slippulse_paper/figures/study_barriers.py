@@ -48,35 +48,37 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     parts = [study[study["part"] == "depth"]]
     for ratio, rows in study[study["part"] == "map"].groupby("damping_ratio"):
         levels = np.linspace(rows["tau0"].min(), rows["tau0"].max(), MAP_POINTS)
-        fine = _interpolate_depths(rows, levels, gamma=1.0, powers={"exact": 0.5})
-        # Exact depths are proportional to gamma^(-1/2), and the estimate to gamma^(-1).
-        powers = {"exact": 0.5, "paper": 1.0}
-        curve = _interpolate_depths(rows, np.array(CURVE_LEVELS), gamma=CURVE_GAMMA, powers=powers)
-        parts.append(fine.assign(part="fine", damping_ratio=ratio))
-        parts.append(curve.assign(part="curve", damping_ratio=ratio))
+        fine = _interpolate_depths(rows, ["exact"], levels)
+        curve = _interpolate_depths(rows, ["exact", "paper"], np.array(CURVE_LEVELS))
+        # The study has depths at gamma = 1. Exact depths are proportional to gamma^(-1/2), and the
+        # estimate to gamma^(-1).
+        curve["exact"] /= CURVE_GAMMA**0.5
+        curve["paper"] /= CURVE_GAMMA
+        parts.append(fine.assign(part="fine", gamma=1.0, damping_ratio=ratio))
+        parts.append(curve.assign(part="curve", gamma=CURVE_GAMMA, damping_ratio=ratio))
     return pd.concat(parts, ignore_index=True)
 
 
 def _interpolate_depths(
-    rows: pd.DataFrame, levels: np.ndarray, gamma: float, powers: dict[str, float]
+    rows: pd.DataFrame, depth_columns: list[str], levels: np.ndarray
 ) -> pd.DataFrame:
     """Interpolate depths between the levels tau_0 and the barriers tau_b of the study.
 
     The result has one row for each level in ``levels`` and each of MAP_POINTS barriers, which are
     evenly spaced in the logarithm.
 
-    rows : depths of the study at gamma = 1
+    rows : depths of the study, on a grid of levels (column tau0) and barriers (column barrier)
+    depth_columns : columns to interpolate
     levels : levels tau_0 of the result
-    gamma : the gamma to which the depths of the result are scaled
-    powers : names of the columns with depths. Depths are proportional to gamma^(-power)
     """
-    # The logarithm of the depth is nearly linear in tau_0 and in log |tau_b|.
+    # A polynomial is fitted to the logarithm of the depth, which is nearly linear in tau_0 and in
+    # log |tau_b|.
     study_levels = np.sort(rows["tau0"].unique())
     study_log_barriers = np.sort(np.log(-rows["barrier"].unique()))
     log_barriers = np.linspace(study_log_barriers[0], study_log_barriers[-1], MAP_POINTS)
     pairs = pd.MultiIndex.from_product([levels, -np.exp(log_barriers)], names=["tau0", "barrier"])
     result = pairs.to_frame(index=False)
-    for column, power in powers.items():
+    for column in depth_columns:
         # One row for each level and one column for each barrier of the study. The columns are
         # reversed, so that |tau_b| rises from left to right.
         study_depths = rows.pivot(index="tau0", columns="barrier", values=column).iloc[:, ::-1]
@@ -84,20 +86,26 @@ def _interpolate_depths(
         # The interpolation is first between the levels, and then between the barriers.
         at_levels = barycentric_interpolate(study_levels, log_study_depths, levels)
         log_depths = barycentric_interpolate(study_log_barriers, at_levels, log_barriers, axis=1)
-        result[column] = np.exp(log_depths).ravel() / gamma**power
-    return result.assign(gamma=gamma)
+        result[column] = np.exp(log_depths).ravel()
+    return result
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw maps of the depth without and with damping, and below them curves and convergence."""
+    """Draw maps of the depth without and with damping, and below them curves and convergence.
+
+    The part "fine" of the table has the exact depths of the maps, "depth" has the depths on
+    lattices, and "curve" has the exact and estimated depths of the curves.
+    """
     figure, (*map_panels, curve_axes, convergence_axes) = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
-    fine, runs = (table[table["part"] == part] for part in ("fine", "depth"))
+    fine, runs = table[table["part"] == "fine"], table[table["part"] == "depth"]
     finest = runs[runs["dx"] == runs["dx"].min()]
     ratios = np.sort(runs["damping_ratio"].unique())
     depth_range = DepthRange(fine["exact"].min(), fine["exact"].max())
     for axes, ratio in zip(map_panels, ratios, strict=True):
+        # Markers on a map show the finest lattices.
         exact_depths = fine[fine["damping_ratio"] == ratio]
         lattice_depths = finest[finest["damping_ratio"] == ratio]
+        # Both maps have the same colours, so that one colour bar is enough.
         image = _draw_map(axes, exact_depths, lattice_depths, depth_range)
         axes.set_title(conditions(held=True, damping_ratio=ratio))
     bar = figure.colorbar(image, ax=map_panels, aspect=25, pad=0.02)
@@ -168,8 +176,8 @@ def _draw_convergence(axes: Axes, runs: pd.DataFrame) -> None:
 def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None:
     """Draw depths as functions of the level of the barrier, with one colour for each level before.
 
-    Lines are exact, dashed lines are the authors' later estimate (column paper), and markers are
-    runs on the finest lattices (column measured). All depths are scaled to CURVE_GAMMA.
+    Lines are exact, and dashed lines are the authors' later estimate (column paper). Both are for
+    CURVE_GAMMA. Markers are runs on the finest lattices (column measured), at several gamma.
     """
     markers = dict(zip(np.sort(finest["gamma"].unique()), MARKERS, strict=False))
     for tau0, rows in curves.groupby("tau0"):
@@ -178,6 +186,7 @@ def _draw_curves(axes: Axes, curves: pd.DataFrame, finest: pd.DataFrame) -> None
         axes.plot(-rows["barrier"], rows["paper"], "--", color=colour, linewidth=0.8)
         runs_of_level = finest[finest["tau0"] == tau0]
         for gamma, runs in runs_of_level.groupby("gamma"):
+            # Depths are proportional to gamma^(-1/2). Those of runs are scaled to CURVE_GAMMA.
             depth = runs["measured"] * np.sqrt(gamma / CURVE_GAMMA)
             axes.plot(-runs["barrier"], depth, markers[gamma], color=colour, **OPEN_MARKER)
     axes.plot([], [], color="0.3", linestyle="--", linewidth=0.8, label="authors' later estimate")

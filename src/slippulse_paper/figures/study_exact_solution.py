@@ -36,12 +36,13 @@ def draw(table: pd.DataFrame) -> Figure:
     """Draw (a) a map, (b) fronts and trailing edges, (c) slip, (d) differences by spacing."""
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     map_axes, edge_axes, slip_axes, difference_axes = panels
-    mapped_scene = next(iter(SCENE_COLOURS))
-    _draw_map(map_axes, table[table["scene"] == mapped_scene])
+    # The map shows only one of the scenes.
+    _draw_map(map_axes, table[table["scene"] == "exact_displacement"])
     for scene, colour in SCENE_COLOURS.items():
         rows = table[table["scene"] == scene]
         look: Look = {"color": colour, "markersize": 2.2} | OPEN_MARKER
-        # The exact solution is drawn in lines, and the lattice as markers.
+        # The exact solution is drawn as lines, and the lattice as markers. The columns release and
+        # stick have the times at which the front and the trailing edge reach a position.
         for role, front_style, trailing_style in (("exact", "-", "--"), ("lattice", "o", "s")):
             curve = rows[rows["role"] == role]
             edge_axes.plot(curve["release"], curve["position"], front_style, **look)

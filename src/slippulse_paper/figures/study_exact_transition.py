@@ -113,6 +113,7 @@ def draw_exact_times(axes: Axes, study: pd.DataFrame) -> None:
     The dashed line holds for a rupture that starts at a point of uniform pre-stress. The other
     lines, one for each gamma, hold for nucleation by the Gaussian.
     """
+    # This ratio is the same for every gamma, so its rows have no gamma.
     uniform = study[study["gamma"].isna()]
     axes.axhline(1.0, color=BLACK, linewidth=0.6)
     axes.plot(uniform["left"], uniform["over_paper"], "--", color=BLACK, label="uniform")

@@ -24,7 +24,10 @@ LEVEL_COLOURS = (SKY, BLUE)
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw regimes of (a) bounded rate laws and (b, c) slip weakening, and (d) front speeds."""
+    """Draw regimes of (a) bounded rate laws and (b, c) slip weakening, and (d) front speeds.
+
+    The role plane has the regimes, and the role selection has the front speeds of panel d.
+    """
     figure, (*planes, speed_axes) = style.new_panels(PAGE_WIDTH, 5.2, "ab;cd")
     rows_by_role = style.by_role(table)
     runs = rows_by_role["plane"]

@@ -47,18 +47,19 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
     The column panel names the panel of a row: prestress, springs or refined. Its value limit marks
     exact limits dx -> 0, which are not drawn. A run has its measured speed, its theoretical speed
-    (theory), and the speed without damping (undamped). The column sound is True if the theory
-    should hold for a run.
+    (theory), and the paper's speed without damping (undamped). The column sound is True if the run
+    has no flag and meets the conditions of the theory.
     """
     lines = tables["front_law"].assign(role="theory")
     runs = pd.concat(
         [uniform_runs(tables), spring_runs(tables, lines), refined_runs(tables, lines)]
     )
-    # The theory of fronts with leaf springs needs a steady and wide pulse. Without leaf springs
-    # there is no pulse.
+    # The theory of fronts with leaf springs needs a steady and wide pulse. Without leaf springs, in
+    # the panel prestress, there is no pulse and no such condition.
+    has_springs = runs["panel"] != "prestress"
     is_steady = runs["pulse_state"] == "steady"
     is_wide = runs["pulse_width"] >= MIN_PULSE_BLOCKS * runs["dx"]
-    has_springs = runs["panel"] != "prestress"
+    meets_conditions = ~has_springs | (is_steady & is_wide)
     # The columns lattice_front_speed are from the theory with leaf springs. Where it has no speed,
     # because leaf springs are absent or hardly matter, the exact theory without them is used.
     theory = runs["lattice_front_speed_right"].fillna(runs["exact_front_speed_right"])
@@ -68,7 +69,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         # For refined lattices, the lines already contain the theory.
         theory=theory.where(runs["panel"] != "refined"),
         undamped=runs["paper_front_speed_right"],
-        sound=runs["run_flags"].isna() & ((is_steady & is_wide) | ~has_springs),
+        sound=runs["run_flags"].isna() & meets_conditions,
     )
     return pd.concat([rows, lines], ignore_index=True)
 
@@ -199,8 +200,9 @@ def _draw_refined(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(line["dx"], line["speed"], **look)
         _mark_runs(axes, group, "dx", "speed", marker)
         axes.plot([], [], marker=marker, label=label, **look)
+    # All runs have the same pre-stress.
     tau0 = float(rows["left"].iloc[0])
-    undamped = rows["undamped"].max()
+    undamped = 1.0 / np.sqrt(1.0 - tau0**2)
     strongly_damped = 1.0 / np.sqrt(1.0 - tau0)
     label = r"$1/\sqrt{1-\tau_0}$"
     _mark_speed(axes, strongly_damped, label, dashes=":", edge="bottom")
@@ -224,9 +226,10 @@ def _mark_runs(
 ) -> None:
     """Mark the runs among some rows in the colour of their damping ratio.
 
-    Markers are open if the theory should not hold for a run.
+    Markers are open if the run does not meet the conditions of the theory (column sound).
 
     x, y : columns on the axes
+    label : entry in the legend, for runs that meet the conditions
     """
     runs = rows[rows["role"] == "simulation"]
     groups = runs.groupby(["damping_ratio", runs["sound"].astype(bool)])

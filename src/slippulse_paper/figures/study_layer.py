@@ -139,6 +139,7 @@ def _draw_field(figure: Figure, axes: Axes, field: pd.DataFrame) -> None:
     """
     # One row for each height and one column for each position.
     grid = field.pivot(index="y", columns="x", values="velocity")
+    # Only the tip is faster than the end of the colour scale.
     brightest = BRIGHTEST_FRACTION * float(grid.to_numpy().max())
     look: Look = {"cmap": "RdBu_r", "vmin": -brightest, "vmax": brightest, "shading": "gouraud"}
     image = axes.pcolormesh(grid.columns, grid.index, grid, rasterized=True, **look)
@@ -199,11 +200,13 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
 def _draw_quantity(
     axes: Axes, rows: pd.DataFrame, quantity: str, unit: float | pd.Series, look: Look
 ) -> None:
-    """Draw a quantity of the pulses at one gamma, divided by a unit, by fracture energy.
+    """Draw a quantity of the pulses at one gamma as a function of the fracture energy.
 
-    Markers are pulses on their finest grids, with the range over all grids as error bars. The
-    dotted line is the pulse in one dimension with the same friction (prefix damped_), and the
-    dashed line is the paper's formula.
+    Markers are pulses on their finest grids. Error bars are the range over all grids (columns with
+    the prefixes least_ and largest_). The dotted line is the pulse in one dimension with the same
+    friction (prefix damped_), and the dashed line is the paper's formula.
+
+    unit : number by which the quantity is divided, for all pulses or for each
     """
     energy, value = rows["fracture_energy"], rows[quantity] / unit
     least, largest = rows[f"least_{quantity}"] / unit, rows[f"largest_{quantity}"] / unit
@@ -274,6 +277,7 @@ def _draw_map(axes: Axes, points: pd.DataFrame) -> None:
     for outcome, rows in points.groupby("outcome"):
         look: Look = {"linestyle": "none", "markersize": 5.0} | OUTCOMES[str(outcome)]
         axes.plot(rows["fracture_energy"], _crossing_width(rows["gamma"]), **look)
+    # To the right of this line, a rupture needs more energy than the layer releases.
     axes.axvline(1.0, color=GREY, linewidth=0.6)
     narrowest = _crossing_width(points["gamma"].max())
     widest = _crossing_width(points["gamma"].min())

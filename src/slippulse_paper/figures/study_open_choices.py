@@ -49,17 +49,18 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     """Return one row for each claim and combination of open choices.
 
     The column over has the deviation divided by the tolerance. The column choice names the choice
-    on which the verdict depends most, and release and solution are choices of the combination. A
-    claim without open choices has one row.
+    on which the verdict depends most. The columns release and solution have two values of the
+    combination: the release rule, and whether the claim is judged by exact theory ("exact") or by
+    runs ("lattice"). A claim without open choices has one row.
     """
     claim_columns = ["id", "label", "verdict", "tolerance", "choice"]
+    # Values for a combination that does not contain these choices.
     default_choices = {"release": "", "solution": "lattice"}
     rows = []
     for claim in tables["claims"].to_dict("records"):
         if claim["kind"] in NUMERIC_KINDS and claim["tolerance"]:
             claim_values = {name: claim[name] for name in claim_columns}
-            # A combination has its choices by name, and the deviation that they give. A choice that
-            # it leaves out has its default.
+            # A combination has the value of each choice by its name, and the deviation.
             combinations = claim["choices"] or [{"deviation": claim["deviation"]}]
             for combination in combinations:
                 rows.append(default_choices | combination | claim_values)
@@ -73,6 +74,7 @@ def draw(table: pd.DataFrame) -> Figure:
 
     The claim with the largest value is on top.
     """
+    # A CSV file has NaN in place of an empty text.
     table = table.fillna({"choice": "", "release": ""})
     largest = table.groupby(["id", "label"])["over"].max().sort_values()
     figure = Figure(figsize=(COLUMN_WIDTH, 1.1 + 0.17 * len(largest)), layout="constrained")
@@ -98,7 +100,7 @@ def draw_claim(axes: Axes, claim: pd.DataFrame, position: int) -> None:
     """Mark the deviations of one claim, divided by its tolerance (column over), in a row.
 
     The colour is that of the choice on which the verdict depends most. Each release rule has its
-    own height in the row, and each solution its own marker.
+    own height in the row, and each solution (exact theory or lattice) its own marker.
 
     position : vertical position of the row
     """
@@ -110,7 +112,7 @@ def draw_claim(axes: Axes, claim: pd.DataFrame, position: int) -> None:
         is_shown = rows["over"] >= MIN_SHOWN_RATIO
         height = position + rows["release"].map(ROW_OFFSETS).fillna(0.0)
         axes.plot(rows["over"].where(is_shown), height, **look)
-    # All smaller ratios are replaced by one upper bound.
+    # Smaller ratios, down to 0, do not fit on the logarithmic axis. One text stands for all.
     if claim["over"].min() < MIN_SHOWN_RATIO:
         bound = rf"$\leq$ {MIN_SHOWN_RATIO:g}"
         axes.text(MIN_SHOWN_RATIO, position, bound, va="center", path_effects=TEXT_OUTLINE)

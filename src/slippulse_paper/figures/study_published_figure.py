@@ -154,7 +154,8 @@ def _draw_chi2(
         curve, best_fit = curves[release], best_fits[release].iloc[0]
         accepted = curve[curve["chi2"] <= largest_accepted]
         axes.plot(accepted["damping_ratio"], accepted["chi2"], color=colour, gid=release)
-        largest_in_interval = curve["chi2"].min() + chi_square_rise(confidence)
+        # The interval limits one parameter, the damping ratio.
+        largest_in_interval = curve["chi2"].min() + chi_square_rise(confidence, parameters=1)
         interval = curve[curve["chi2"] <= largest_in_interval]
         look: Look = {"color": colour, "alpha": 0.18, "linewidth": 0.0}
         axes.fill_between(interval["damping_ratio"], interval["chi2"], **look)
@@ -193,7 +194,7 @@ def _draw_region(
         rise_along_curve = curve["chi2"] - curve["chi2"].min()
         for level, alpha in zip(CONFIDENCE_LEVELS[::-1], (0.22, 0.45), strict=True):
             # In the region, chi-square lies above its minimum by at most this amount.
-            largest_rise = chi_square_rise(level, 2)
+            largest_rise = chi_square_rise(level, parameters=2)
             is_inside = rise_along_curve <= largest_rise
             region = curve[is_inside]
             # Away from the best value of the parameter, chi-square rises by the square of the

@@ -80,6 +80,9 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
 
     Each level of the pre-stress has a colour. Exact theory is drawn as lines, and runs as markers,
     which are open if the run is flagged.
+
+    rows : exact values that are already divided by the formula (column over_paper), and measured
+        values (value) with those of the formula (paper)
     """
     axes.axhline(1.0, color=GREY, linewidth=0.8, linestyle="--", label="paper's formula")
     for level, group in rows.groupby("left"):

@@ -27,6 +27,7 @@ def draw(table: pd.DataFrame) -> Figure:
     """
     figure, panels = style.new_panels(PAGE_WIDTH, 5.4, "ab;cd")
     plane_axes, pulse_axes, map_axes, arrest_axes = panels
+    # All runs with leaf springs have the same gamma.
     table = table.assign(scaled_rate=table["rate_strengthening"] / np.sqrt(table["gamma"].iloc[0]))
     rows_by_role = style.by_role(table)
     runs = rows_by_role["lattice"]
@@ -42,7 +43,10 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def _draw_pulses(axes: Axes, steady: pd.DataFrame, runs: pd.DataFrame) -> None:
-    """Draw width and slip of pulses by rate strengthening: exact lines, and lattices as markers."""
+    """Draw the width and slip of pulses as functions of the rate strengthening.
+
+    Lines are exact steady pulses, and markers are lattice runs.
+    """
     width, slip = r"width $W_\text{p}$", r"slip $u$"
     looks = {"pulse_width": (BLACK, "o", width), "pulse_slip": (GREY, "s", slip)}
     for column, (colour, marker, label) in looks.items():
@@ -84,11 +88,12 @@ def _draw_arrest(axes: Axes, lattices: pd.DataFrame, asymptotes: pd.DataFrame) -
 
 
 def _draw_plane(axes: Axes, runs: pd.DataFrame, limit: pd.DataFrame) -> None:
-    """Draw the regimes of runs by rate strengthening and level.
+    """Draw the regime of each run, in the plane of rate strengthening and level.
 
-    Exact theory has sticking pulses in the shaded region between its two lines.
+    Exact theory has sticking pulses in the shaded region between its two lines. Markers are open if
+    a block at rest would slide backwards, which the model does not allow.
 
-    limit : rate strengthening at the line on the right, for each level
+    limit : rate strengthening at the right line for each level; the left line is its mirror image
     """
     look: Look = {"color": BLUE, "alpha": 0.12, "linewidth": 0.0}
     axes.fill_betweenx(limit["level"], -limit["scaled_rate"], limit["scaled_rate"], **look)

@@ -141,14 +141,15 @@ def draw_rate(axes: Axes, ensemble: Ensemble) -> None:
 
 
 def finish_rates(axes: Axes, with_deaths: pd.DataFrame) -> None:
-    """Draw the line on which death rate and predicted rate are equal, and set the axes of panel b.
+    """Complete panel b: add ensembles without a colour, the line of equal rates, and the axes.
 
-    Within the band around the line, they differ by less than a factor of two.
+    On the line, death rate and predicted rate are equal. Within the band around it, they differ by
+    less than a factor of two.
 
     with_deaths : one row for each ensemble in which a pulse died. The first ones, as many as there
         are COLOURS, have been drawn already (see `draw_rate`)
     """
-    # The others are small grey points.
+    # Ensembles without a colour are small grey points.
     uncoloured = with_deaths.iloc[len(COLOURS) :]
     axes.plot(uncoloured["barrier_rate"], uncoloured["rate"], ".", color=GREY, zorder=1.0)
     ends = np.array([3e-5, max(1e-2, 1.2 * with_deaths["barrier_rate"].max())])
@@ -188,7 +189,7 @@ def finish_walks(axes: Axes, long_survival: pd.DataFrame) -> None:
 
 
 def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
-    """Mark the slip velocity of each pulse that is alive at the end, by its exact velocity."""
+    """Mark simulated and exact slip velocity of each pulse that is alive at the end."""
     pulses = ensemble.part("pulse")
     alive = pulses[~pulses["died"].astype(bool)]
     look: Look = {"color": ensemble.colour, "label": ensemble.label}
@@ -199,7 +200,11 @@ def draw_velocities(axes: Axes, ensemble: Ensemble) -> None:
 
 
 def finish_velocities(axes: Axes) -> None:
-    """Draw the line of equal simulated and exact velocity, and set the axes of panel d."""
+    """Draw the line of equal simulated and exact velocity, and set the axes of panel d.
+
+    The exact velocity of a pulse is half of the integral of the pre-stress behind it.
+    """
+    # The line ends at the largest exact velocity that has been drawn.
     largest = float(axes.dataLim.x1)
     axes.plot([0.0, largest], [0.0, largest], color=BLACK, linewidth=0.8, zorder=0.0)
     axes.set(

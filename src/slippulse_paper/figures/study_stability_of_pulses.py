@@ -42,7 +42,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     for number in range(held_top.sizes["point"]):
         parts.append(lattice_slip(point(held_top, number), exact).assign(role="lattice"))
     held_stress = data["regimes_beyond"]
-    # The runs with the lowest level on the left have the narrowest pulse.
+    # The velocity is drawn for the lowest level on the left. It gives the narrowest pulse, which
+    # needs the shortest time to cross the step.
     left_levels = held_stress["left"].values
     for index in np.flatnonzero(left_levels == left_levels.min()):
         velocities = largest_velocities(point(held_stress, int(index)))
@@ -52,6 +53,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
 def lattice_slip(run: xr.Dataset, exact: pd.DataFrame) -> pd.DataFrame:
     """Return the final slip of a run as a function of the distance x from the step.
+
+    Only a block that has stuck has its final slip. About LATTICE_POINTS such blocks are kept.
 
     exact : the exact slip of all runs; the result covers the same distances
     """
@@ -72,7 +75,7 @@ def largest_velocities(run: xr.Dataset) -> pd.DataFrame:
     has its position.
     """
     step_position, level = prestress_from(run.attrs).steps[-1]
-    # The slice leaves out the position 0.
+    # The right pulse is at positions above 0. The slice leaves out 0 itself.
     velocity_on_right = run["sample_velocity"].sel(sample_position=slice(1e-9, None))
     largest = velocity_on_right.max("sample_position").values
     rows = pd.DataFrame({"time": run["sample_time"].values, "largest_velocity": largest})
@@ -95,6 +98,7 @@ def draw(table: pd.DataFrame) -> Figure:
         _draw_deviation(deviation_axes, exact, marked, colour)
     slip_axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     slip_axes.set(xlabel=r"distance beyond the step $x$", ylabel=r"slip left behind $u$")
+    # All runs have the same level before the step and the same spacing.
     slip_axes.set_title(rf"$\Gamma = 1$, $\tau_0 = {slip['before'].max():g}$ before")
     handles_of_levels, _ = slip_axes.get_legend_handles_labels()
     lattice_label = rf"lattice, $\Delta x = {slip['dx'].max():g}$"
@@ -161,8 +165,10 @@ def _finish_deviation(axes: Axes) -> None:
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the largest velocity as a function of time, with one line for each level.
 
-    A line has the colour of growth, decay or neither, and its level is written at its end.
+    A line has the colour of growth, decay or neither. Its level is written at its end, or where it
+    leaves the panel.
     """
+    # The velocity of a dead pulse is 0, which a logarithmic axis cannot show.
     rows = rows[rows["largest_velocity"] > 0.0]
     # A pulse decays at a negative level, and grows at a positive one.
     colours = {-1.0: style.GREEN, 0.0: style.YELLOW, 1.0: style.PURPLE}
@@ -173,12 +179,11 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
         label_position = (time.iloc[-1], velocity.iloc[-1])
         if velocity.iloc[-1] <= MIN_DRAWN_VELOCITY:
-            # The label stands where the line leaves the panel at its bottom. Interpolation needs
-            # ascending velocities, but they fall with time, so their order is reversed.
-            falling_log_velocity = np.log(velocity.to_numpy())
-            exit_time = np.interp(
-                np.log(MIN_DRAWN_VELOCITY), falling_log_velocity[::-1], time.to_numpy()[::-1]
-            )
+            # The line leaves the panel at its bottom. It is straight on the logarithmic axis, so
+            # logarithms are interpolated. They fall with time, but must ascend for interpolation.
+            ascending_logs = np.log(velocity.to_numpy()[::-1])
+            times = time.to_numpy()[::-1]
+            exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending_logs, times)
             label_position = (exit_time, 1.15 * MIN_DRAWN_VELOCITY)
         axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")

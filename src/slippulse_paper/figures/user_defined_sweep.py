@@ -60,7 +60,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     # The figure needs only the table of its sweep.
     (runs,) = tables.values()
     has_equal_levels = (runs["left"] == runs["right"]).all()
-    # With different levels, tau_0 is the same number for all runs, so that it does not vary.
+    # The column tau_0 has the level of both sides. If they differ in some run, it has the same
+    # number in all runs, so that `varying_columns` leaves it out.
     runs = runs.assign(tau_0=runs["left"] if has_equal_levels else 0.0)
     # If nothing varies, as in a single run, the axis shows the profile or the level on the left.
     axis_of_equal_runs = "profile" if "profile" in runs else "left"
@@ -94,7 +95,10 @@ def fixed_settings(runs: pd.DataFrame, levels: list[str]) -> str:
 
 
 def varying_columns(runs: pd.DataFrame) -> list[str]:
-    """Return the columns that vary: numbers before texts, and then those with most values first."""
+    """Return the names of the columns that vary: first numbers, then texts.
+
+    In each of these two groups, the column with the most values comes first.
+    """
     # Only a sweep with pre-stress tables has the column profile.
     columns = TABLE_SWEEP_COLUMNS if "profile" in runs else VARYING_COLUMNS
     # If two columns are equal in every run, only the first one is kept. In the transposed table,
@@ -102,6 +106,7 @@ def varying_columns(runs: pd.DataFrame) -> list[str]:
     different = runs[list(columns)].T.drop_duplicates().index
     counts = runs[different].nunique()
     varying = counts[counts > 1].sort_values(ascending=False, kind="stable").index
+    # A seed is an integer without a meaning of its own, so it counts as a text.
     numbers = [column for column in varying if runs[column].dtype.kind == "f"]
     texts = [column for column in varying if column not in numbers]
     return numbers + texts
@@ -119,6 +124,7 @@ def _text(value: float | str) -> str:
 
 def draw(table: pd.DataFrame) -> Figure:
     """Draw one panel for each quantity: runs as markers, open if flagged, and theory as lines."""
+    # A CSV file has NaN in place of an empty text.
     table = table.assign(series=table["series"].astype(object).fillna(""))
     figure, panels = new_panels(PAGE_WIDTH, 4.2, "abc;def")
     rows_by_quantity = [rows for _, rows in table.groupby("quantity", sort=False)]
@@ -128,7 +134,9 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_quantity(axes, rows)
     for empty_panel in panels[len(drawn) :]:
         empty_panel.set_visible(False)
-    figure.suptitle(table["fixed"].iloc[0])
+    # All panels are hidden if no run has a number, for example because all runs are too short.
+    no_numbers = "no run gives a number that this figure shows"
+    figure.suptitle(no_numbers if table.empty else table["fixed"].iloc[0])
     series, _ = panels[0].get_legend_handles_labels()
     handles = [*series, entry("simulation", marker="o", color=GREY)]
     if table["theory"].notna().any():
@@ -142,7 +150,8 @@ def draw(table: pd.DataFrame) -> Figure:
 def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw one quantity: runs as markers, open if flagged, and theory as a line.
 
-    Each series has a colour. If there are not enough colours, everything is grey.
+    A series is a set of runs that differ only in the parameter on the horizontal axis, and has a
+    colour. If there are not enough colours, everything is grey and has no entry in the legend.
     """
     groups = rows.groupby("series", sort=False)
     has_colours = 1 < groups.ngroups <= len(COLOUR_CYCLE)
@@ -151,8 +160,8 @@ def draw_quantity(axes: Axes, rows: pd.DataFrame) -> None:
         group = group.sort_values("x")
         is_flagged = group["run_flags"].notna()
         axes.plot(group["x"], group["theory"], color=colour, linewidth=0.8)
-        # Values that are not to be drawn are NaN.
+        # NaN values are not drawn.
         unflagged, flagged = group["value"].mask(is_flagged), group["value"].where(is_flagged)
-        axes.plot(group["x"], unflagged, "o", color=colour, label=series or None)
+        axes.plot(group["x"], unflagged, "o", color=colour, label=series if has_colours else None)
         axes.plot(group["x"], flagged, "o", color=colour, **OPEN_MARKER)
     axes.set(xlabel=_name(rows["axis"].iloc[0]), ylabel=with_symbols(rows["label"].iloc[0]))

@@ -102,7 +102,9 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     }
     tables_by_role = [rows.assign(role=role) for role, rows in parts.items()]
     table = pd.concat(tables_by_role, ignore_index=True)
-    return table.assign(gamma=GAMMA, damping_ratio=DAMPING_RATIO)
+    # The crack that is arrested has no leaf springs.
+    is_arrest = table["role"].isin(["arrest", "asymptote"])
+    return table.assign(gamma=np.where(is_arrest, 0.0, GAMMA), damping_ratio=DAMPING_RATIO)
 
 
 @cache

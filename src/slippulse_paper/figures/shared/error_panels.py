@@ -93,6 +93,7 @@ def draw_errors(panels: Sequence[Axes], table: pd.DataFrame, cost: str, axis_lab
         axes.set(ylabel=f"relative error of {title}", title=boundary)
         # The names of the presets and the error of the exact solution need some room.
         axes.set_ylim(0.2 * lattices["error"].min(), 2.5 * lattices["error"].max())
+        # If the cost counts passes over blocks, the exact solution has none, and its cost is NaN.
         exact = rows[rows["role"] == "exact"].iloc[0]
         if np.isfinite(exact[cost]):
             _draw_exact(axes, exact[cost], exact["error"])
@@ -103,6 +104,8 @@ def _draw_frontiers(axes: Axes, rows: pd.DataFrame, cost: str) -> None:
 
     The localised scheme has one coloured line for each order, and the textbook scheme one thin
     black line.
+
+    cost : name of the column with the cost
     """
     frontier = rows[rows["role"] == "frontier"]
     orders = sorted(frontier.loc[frontier["scheme"] == "localised", "order"].unique())

@@ -58,6 +58,7 @@ def pulse_table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> 
     (the points of a curve). Positions x are relative to the peak of the slip velocity.
     `frame_of_pulse` describes the units.
     """
+    # The front speed of a run is measured over this last fraction of the front's path.
     window = settings["measure"]["front_window"]
     exact_profiles = tables["pulse_profiles"].groupby(["simulation", "run"])
     parts = []
@@ -193,7 +194,8 @@ def plot_fields(table: pd.DataFrame) -> Figure:
         # The undamped lattice oscillates at the front with a larger amplitude than theory has.
         acceleration_axes.set_ylim(-1.3, 1.3)
     else:
-        # The inset stands where the velocity is small.
+        # Under a stress boundary, the shape of the pulse depends on the Gaussian of the pre-stress.
+        # An inset shows it where the velocity is small.
         box = (0.09, 0.66, 0.33, 0.22)
         draw_prestress(velocity_axes, box, styled_runs(table), half_length_in_widths=5.0)
         # The exact acceleration has no bound at the front.

@@ -101,7 +101,8 @@ def ratio_inset(
 
     box : place of the inset in the panel
     quantity : "length" or "time"
-    x_column, line_column : as in `draw_ratio`
+    x_column : column on the horizontal axis
+    line_column : there is one line, with its own colour, for each value of this column
     """
     inset = style.small_inset(axes, box, "measured / formula")
     inset.set_in_layout(False)
@@ -207,5 +208,6 @@ def _set_axis_of_damping_ratios(axes: Axes, ratios: np.ndarray) -> None:
     # If all runs are undamped, any range will do.
     smallest_positive = positive_ratios[0] if positive_ratios.size else 1.0
     axes.set_xscale("symlog", linthresh=smallest_positive, linscale=0.5)
+    # There is room for about four ticks.
     style.few_ticks(axes.xaxis, ratios[::2] if len(ratios) > 4 else ratios)
     axes.set_xlim(-0.4 * smallest_positive, 1.7 * max(ratios[-1], smallest_positive))
