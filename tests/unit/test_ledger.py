@@ -401,8 +401,8 @@ def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_ze
     runs["pulse_half_width"] = [1.0, 1.5, 3.0, 2.0]
     same = {"left": -0.5, "right": 0.0, "dx": 0.1, "damping_ratio": 0.1, "release": "total"}
     signs = growth_signs(runs.assign(**same, friction="coulomb", regime="pulse, one-way, steady"))
-    assert [*signs["changed"]] == [0.0, 1.0, 0.0, 0.0]
-    assert [*signs["widened"]] == [0.0, 1.0, 0.0, -1.0]
+    assert [*signs["velocity_growth"]] == [0.0, 1.0, 0.0, 0.0]
+    assert [*signs["width_growth"]] == [0.0, 1.0, 0.0, -1.0]
 
 
 def test_a_sweep_may_have_several_release_rules():
