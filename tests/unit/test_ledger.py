@@ -547,6 +547,8 @@ def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
     ledger = Ledger([CLAIM | {"further": further}], numbers)
     assert ledger.listed("one", "apart") == "3 *arrested*; 2 *growing*"
+    assert ledger.listed("one", "apart,\n0") == "3 *arrested*; 2 *growing*"
+    assert ledger.listed("one", "else") == "none"
     assert ledger.found("ours").gap == 0.5 and ledger.found("no") is None
     with pytest.raises(ValueError, match="finding: 'none'; allowed: ours, no"):
         ledger.found("none")
