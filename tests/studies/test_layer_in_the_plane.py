@@ -1,5 +1,6 @@
 """The layer in the plane beside one dimension: what holds, what does not, and what converges."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -251,6 +252,15 @@ def test_a_held_top_makes_pulses_steady_under_friction_that_recovers(study):
     thick = slip.drop(index=1.0, level="thickness").dropna(axis="columns")
     ratios = thick.max() / thick.min()
     assert ratios.is_monotonic_increasing and ratios.iloc[-1] > 1.2 * ratios.iloc[0] > 3.6
+
+
+@pytest.mark.parametrize("position", [18.0, 24.0])
+def test_a_pulse_that_has_not_yet_passed_does_not_count_as_dead(position):
+    """At the time 20 the pulse slides at x = 18, and has not yet arrived at x = 24."""
+    layer = replace(layer_healing.THIN, duration=20.0, positions=(position,))
+    pulse = layer_healing.Pulse(tau0=0.56, before=0.56, patch_half_length=2.0)
+    with pytest.raises(ValueError, match=f"before the slip at x = {position:g} is known"):
+        layer_healing.slips(layer, pulse, cells=20)
 
 
 @pytest.mark.slow
