@@ -204,6 +204,7 @@ def _nucleation_width(prestress: Prestress) -> float:
         return math.inf
     has_fallen = tau <= far_level + math.exp(-0.5) * (tau[highest_point] - far_level)
     distances = np.abs(x[has_fallen] - x[highest_point])
+    # If the far level is as high as the maximum, the highest point itself is among these points.
     return float(np.min(distances[distances > 0.0], initial=math.inf))
 
 

@@ -39,7 +39,8 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
     # The exact solution covers only friction that is 0, or linear in slip velocity.
     is_linear = "continuum" in friction.schemes
     # Both schemes solve linear friction by its constant alpha. The Taylor step also solves
-    # piecewise linear friction, by the constants of its kink, and no other laws.
+    # piecewise linear friction, by the constants of its kink, and no other laws. The law number 0
+    # means that no other law is needed.
     if localised or is_linear:
         return FrictionConstants(
             alpha=traits.linear_rate,
@@ -128,7 +129,7 @@ def add_weakening(w, k, first, last, block_of_column_0, motion, law_kink):
 
 
 @kernel_function(inline=True)
-def subtract_friction(motion, first, last, law_kink):
+def subtract_piecewise_linear_friction(motion, first, last, law_kink):
     """Subtract piecewise linear friction from the accelerations of blocks first..last-1."""
     if law_kink is not None:
         w = motion.derivatives

@@ -92,8 +92,9 @@ class Lattice:
         numbers = (np.sign(in_spacings) * np.floor(np.abs(in_spacings) + 0.5)).astype(np.int64)
         self.sampled_numbers = np.abs(numbers) if self.is_mirrored else numbers
         slip, velocity = np.zeros((2, samples.times.size, samples.positions.size))
-        # `_extend` replaces the numbers of the blocks by their positions in the arrays.
-        self.recorder = arrays.Recorder(samples.times.copy(), numbers, slip, velocity)
+        # `_extend` enters the sampled blocks, by their positions in its arrays.
+        no_blocks = np.full_like(numbers, -1)
+        self.recorder = arrays.Recorder(samples.times.copy(), no_blocks, slip, velocity)
 
     def _cover_nucleation(self) -> None:
         """Extend the lattice over all blocks that can be released at t = 0.
@@ -194,7 +195,10 @@ class Lattice:
         self.largest_force = growth * (largest_prestress + traits.max_drive)
 
     def _advance(self, limits: arrays.Limits) -> int:
-        """Call the kernel, and return the reason why it stopped."""
+        """Advance the lattice in one call of the kernel, and return the reason why it stopped.
+
+        limits : size of the steps, and the conditions that end the call
+        """
         # The first block of each segment of sliding blocks, and the block after its last one.
         edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
         segments = arrays.make_segments(self.size)

@@ -106,8 +106,9 @@ class Weights(NamedTuple):
 def _block_weights(lattice: Lattice) -> Weights:
     """Return the weights of blocks and bonds in a sum over the whole lattice.
 
-    On a mirrored lattice each counts twice, because it has a mirror image. Block 1 on the axis
-    counts once. Block 0 is a mirror image itself and does not count.
+    Bond i joins block i and block i + 1. On a mirrored lattice each counts twice, because it has a
+    mirror image. Block 1 on the axis counts once. Block 0 and bond 0 are mirror images themselves
+    and do not count.
     """
     if not lattice.is_mirrored:
         return Weights(np.ones(lattice.size), np.ones(lattice.size))

@@ -98,7 +98,7 @@ def take_samples(recorder, motion, tally, start, end, order):
     w = motion.derivatives
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
-        # Time of the sample since the step began.
+        # Time of the sample since the step began. A rounding error must not put it outside the step.
         s = min(max(times[n], start), end) - start
         for p in range(blocks.shape[0]):
             i = blocks[p]
@@ -276,7 +276,7 @@ def fill_derivatives(medium, motion, segments, alpha, top):
         )
         if alpha != 0.0:
             friction.subtract_rate_strengthening(w, 2, first, last, alpha)
-        friction.subtract_friction(motion, first, last, medium.law_kink)
+        friction.subtract_piecewise_linear_friction(motion, first, last, medium.law_kink)
         for k in range(3, top + 1):
             if is_mirrored and first == 1:
                 w[k - 1, 0] = w[k - 1, 2]
@@ -286,7 +286,7 @@ def fill_derivatives(medium, motion, segments, alpha, top):
                 )
             if alpha != 0.0:
                 friction.subtract_rate_strengthening(w, k, first, last, alpha)
-            # The columns of w are the blocks of the lattice from block 0 on.
+            # The same for piecewise linear friction. Column 0 of w is block 0 of the lattice.
             friction.add_weakening(w, k, first, last, np.uint64(0), motion, medium.law_kink)
     if is_mirrored:
         for k in range(1, top + 1):
