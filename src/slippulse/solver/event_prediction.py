@@ -270,22 +270,21 @@ def predict_stick(coefficients, slopes, degree, end_velocity, now, step_end):
         if evaluate_polynomial(coefficients, degree, turn) >= -ROUNDING_TOLERANCE:
             return math.inf
         return find_crossing(coefficients, degree, now, turn)
-    if end_velocity >= 0.0:
-        # The velocity at the end is 0 apart from rounding. If it is 0 now as well, the block was
-        # released just before the end of the step, and does not stick.
-        if abs(velocity_now) <= ROUNDING_TOLERANCE:
-            return math.inf
+    if end_velocity >= 0.0 and abs(velocity_now) <= ROUNDING_TOLERANCE:
+        # The velocity is 0 now and at the end, apart from rounding. The block was released just
+        # before the end of the step, and does not stick.
+        return math.inf
+    if end_velocity >= 0.0 or velocity_now > ROUNDING_TOLERANCE:
+        # The velocity falls from a positive value to 0, apart from rounding, or below.
         return find_crossing(coefficients, degree, now, step_end)
-    # From here on the velocity at the end is negative, so that the block sticks.
-    if velocity_now > ROUNDING_TOLERANCE:
-        return find_crossing(coefficients, degree, now, step_end)
-    # The velocity is 0 now, apart from rounding. If it rises, the block is released now, and sticks
-    # after the velocity has passed its maximum. To find this turning point, the coefficients of the
-    # slope are computed, too.
+    # The velocity is 0 now, apart from rounding, and negative at the end. If it rises now, the
+    # block has just been released, and sticks after its velocity has passed the maximum.
+    # `find_turning_point` also fills ``slopes``.
     turn = find_turning_point(coefficients, slopes, degree, now, step_end)
-    if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
+    is_rising = evaluate_polynomial(slopes, degree - 1, now) > 0.0
+    if is_rising:
         return find_crossing(coefficients, degree, turn, step_end)
-    # If it falls, the block sticks as soon as the velocity is not positive.
+    # Otherwise the block sticks at once, or as soon as the small positive velocity is gone.
     return find_crossing(coefficients, degree, now, step_end) if velocity_now > 0.0 else now
 
 

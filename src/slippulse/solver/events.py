@@ -184,15 +184,15 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         if medium.alpha != 0.0:
             subtract_rate_strengthening(rows, k, first, last, medium.alpha)
         add_weakening(rows, k, first, last, block_of_column_0, motion, medium.law_kink)
-        # A block that stuck is held, so the change of its neighbours does not move it. Any other
-        # block of an event is moved by its neighbours, too.
+        # A block that stuck is held, so block_change is its whole change. A block that slides also
+        # feels the changes of its neighbours, computed above.
         if event.is_stick:
             rows[k, CENTRE_COLUMN] = block_change[k]
         else:
             rows[k, CENTRE_COLUMN] += block_change[k]
     if event.is_stick:
-        # `hold_block` has set the motion of the block that stuck to 0. Only the change of the other
-        # blocks is still to be added.
+        # The lattice already has the new motion of the block that stuck, because `hold_block` has
+        # set it to 0. Only the changes of the other blocks are still to be added.
         for k in range(2, top + 1):
             rows[k, CENTRE_COLUMN] = 0.0
 
@@ -285,15 +285,16 @@ def update_mirror_image(motion, top):
 def predict_events_again(medium, motion, segments, prediction, first, last, now, step_end):
     """Predict the events of blocks first..last-1, whose motion an event has changed at ``now``.
 
-    Returns two values: False if a velocity is not finite at ``step_end``, and the lowest stress of
-    the blocks at rest for which a release was predicted again.
+    Returns two values: False if a velocity is not finite at ``step_end``, and the lowest stress at
+    ``now`` of the blocks at rest for which a release was predicted.
     """
     top = motion.derivatives.shape[0] - 1
     # The motion of these blocks also changes the stress of the block on either side of them.
     lowest_stress = predict_releases(
         medium, motion, segments, prediction, first - 1, last + 1, now, step_end
     )
-    # Replace the sticks and kinks that were predicted before the event. Every block may stick.
+    # Replace the sticks and kinks that were predicted before the event. Any number of these blocks
+    # may stick.
     drop_predicted_events(prediction, first, last)
     may_stick_count = last - first
     is_finite = predict_sticks(motion, prediction, first, last, may_stick_count, now, step_end, top)

@@ -67,7 +67,7 @@ def begin_weakening(motion, law_kink, block):
     law_kink : constants of a piecewise linear law; None for other laws, which need no start
     """
     if law_kink is not None:
-        # The factor is 0 in the zone without friction, and otherwise 1.
+        # The factor is 0 in the zone of nucleation, which has no friction, and 1 elsewhere.
         weakening_slope = motion.law_factor[block] * law_kink.weakening_slope
         motion.weakening_slope[block] = weakening_slope
         if law_kink.argument_row == SLIP:

@@ -438,20 +438,21 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return three groups of fields: with elastic stresses, with those one step before, with total.
+    """Return the fields of a layer at the start, three times if it is damped.
 
-    The total stresses include damping, which is computed from the change of the elastic stresses in
-    a step. All three groups share the velocities, and without damping also the stresses.
+    Damping is computed from the change of the elastic stresses in a step. A damped layer therefore
+    needs its elastic stresses, those of one step before, and total stresses, which include damping.
+    All three share the velocities.
     """
     if elastic.damping == 0.0:
         return DampedFields(elastic=fields, earlier=fields, total=fields)
     return DampedFields(
-        elastic=fields, earlier=with_own_stresses(fields), total=with_own_stresses(fields)
+        elastic=fields, earlier=with_copied_stresses(fields), total=with_copied_stresses(fields)
     )
 
 
-def with_own_stresses(fields: Fields) -> Fields:
-    """Return fields that share the velocities with others, and have a copy of their stresses."""
+def with_copied_stresses(fields: Fields) -> Fields:
+    """Return fields that share the given velocities, and have copies of the given stresses."""
     return fields._replace(sxx=fields.sxx.copy(), syy=fields.syy.copy(), sxy=fields.sxy.copy())
 
 

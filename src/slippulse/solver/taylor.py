@@ -241,6 +241,7 @@ def add_losses(medium, tally, step_events, dissipation, h):
     The part that is left out is h/3 times the dissipation at the end of the step. It is not known
     yet, and `complete_losses` adds it at the start of the next step.
 
+    step_events : contains the sums of the jumps that events made in the slopes of the dissipation
     dissipation : `Dissipation` at the start of the step
     """
     if medium.beta > 0.0 or medium.alpha != 0.0:
