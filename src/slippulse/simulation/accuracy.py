@@ -268,6 +268,7 @@ def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]
     if prestress.points:
         distances = _distances_to_zeros_of_table(prestress)
         return [float(np.min(distances))] if distances.size else []
+    # Without a Gaussian (width None), the pre-stress falls to 0 at no finite distance.
     width, peak = prestress.width or math.inf, prestress.peak
     # Where level + (peak - level) exp(-x^2 / 2 width^2) is 0.
     negative_levels = [level for level in levels if level < 0.0 < peak]

@@ -110,8 +110,8 @@ def hold_block(block_change, w, event_slip, block, now, top):
     event_slip : slip by events of the step; the slip of the block in the step until now is added
     """
     # Move the derivatives of the block from w to block_change, and replace derivatives 0 to ``top``
-    # there by their values at the time ``now``. Derivative 0 begins as 0, and becomes the slip since
-    # the start of the step.
+    # there by their values at the time ``now``. Derivative 0 begins as 0, and becomes the slip
+    # since the start of the step.
     block_change[SLIP] = 0.0
     for k in range(1, top + 1):
         block_change[k] = w[k, block]

@@ -57,7 +57,7 @@ def combine_laws(laws: Sequence[type[Friction]]):
 
     @kernel_function()
     def friction(law, slip, velocity, parameter_1, parameter_2):
-        """Return the friction of law number ``law`` of the list: of its first law, or of a later one."""
+        """Return the friction of law number ``law`` in the list: its first or a later one."""
         if law == 0:
             return friction_of_first(slip, velocity, parameter_1, parameter_2)
         return friction_of_others(law - 1, slip, velocity, parameter_1, parameter_2)

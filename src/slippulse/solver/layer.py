@@ -80,7 +80,7 @@ class LayerScene:
             check_number(name, getattr(self, name), above=0.0)
         for name in ("nucleation", "coupling", "rate", "beta"):
             check_number(name, getattr(self, name), at_least=0.0)
-        check_number("cells", self.cells, at_least=4)
+        check_number("cells", self.cells, integer=True, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
         largest = MAX_DAMPING_RATIO / self.cells
         allowed = f"a number <= {largest:.4g}, above which a grid of {self.cells} cells is unstable"
@@ -531,7 +531,8 @@ def _fields_at_rest(scene: LayerScene, size: int) -> Fields:
 def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
     """Return the state of the bottom before t = 0, at nodes of positions x.
 
-    All nodes are at rest. Friction is 0 at the nodes of the nucleus, where the rupture starts.
+    All nodes are at rest. Friction is 0 at the nodes of the nucleus, where the rupture starts,
+    whatever their value of ``strength``.
     """
     tau = scene.prestress(x)
     # A quarter of a cell is added, so that rounding does not decide about the outermost node.
@@ -545,8 +546,9 @@ def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
         strength=np.ones(x.size),
         release_time=np.full(x.size, np.nan),
         stick_time=np.full(x.size, np.nan),
-        # Shear stress minus strength, which is 0 in the nucleus and 1 elsewhere.
+        # Shear stress minus the strength that acts, which is 0 in the nucleus and 1 elsewhere.
         excess=tau - np.where(nucleus, 0.0, 1.0),
+        # Work of the pre-stress, and its work minus that of friction.
         work=np.zeros(2),
     )
 

@@ -155,6 +155,7 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
     if medium.damping_counts_for_release:
         stress += medium.beta * np.diff(velocity, 2) / dx**2
     is_stuck = ~lattice.sliding[1:-1]
+    # The kernel has recorded the lowest stress that a stuck block had during the run.
     lowest_stress = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
     # A block slides backwards at the stress -(1 + 2 r) if r is the friction ratio,
     # mu_k/(mu_s - mu_k). At this ratio, the block of the lowest stress would just do so.

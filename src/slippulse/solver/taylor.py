@@ -98,7 +98,7 @@ def take_samples(recorder, motion, tally, start, end, order):
     w = motion.derivatives
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
-        # Time of the sample since the step began. A rounding error must not put it outside the step.
+        # Time of the sample since the step began, kept within the step in spite of rounding.
         s = min(max(times[n], start), end) - start
         for p in range(blocks.shape[0]):
             i = blocks[p]
@@ -501,6 +501,7 @@ def advance(  # noqa: C901, PLR0912
         # Stage 1: the derivatives at the start of the step, and the end of the run.
         start = tally.time
         if medium.alpha == 0.0:
+            # With the constant 0.0, the compiler leaves out the friction alpha v.
             fill_derivatives(medium, motion, segments, 0.0, top)
         else:
             fill_rate_strengthened_derivatives(medium, motion, segments, top)
