@@ -57,6 +57,8 @@ def run_title(rows_by_role: dict[str, pd.DataFrame]) -> str:
     """Return a title with the boundary, pre-stress, damping and flags of a run.
 
     The law of friction is named if it is not that of the paper.
+
+    rows_by_role : rows of the table of the figure; only tables in SI units have the role "unit"
     """
     if "unit" in rows_by_role:
         return _append_remarks(_title_in_si(rows_by_role["parameter"]), rows_by_role)

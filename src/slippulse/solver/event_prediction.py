@@ -139,15 +139,16 @@ def predict_release(medium, motion, prediction, block, now, step_end, top):
     slip = w[SLIP, block] + motion.event_slip[block]
     elastic = elastic_force(medium, motion, block)
     coefficients[0] = elastic - medium.leaf_stiffness * slip + motion.tau[block] - 1.0
-    # The block is at rest, so that only the motion of its two neighbours changes its stress. The
-    # coefficient of power k is derivative k of the stress, divided by k!. In the loop,
-    # ``inverse_factorial`` is 1/(k - 1)! and then 1/k!.
+    # The block is at rest, so that only the motion of its two neighbours changes its stress, by
+    # their slip and, through damping, by their velocities. The coefficient of power k is derivative
+    # k of the stress, divided by k!. In the loop, ``inverse_factorial`` is 1/(k - 1)!, then 1/k!.
     inverse_factorial, damping = 1.0, 0.0
+    # With beta < 0, the sign that the paper prints, damping is not part of the stress here.
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
     for k in range(1, top + 1):
         neighbours = w[k, block - 1] + w[k, block + 1]
-        # The damping force contains the velocity, whose derivative k - 1 is derivative k of slip.
+        # Derivative k - 1 of the velocity is derivative k of slip.
         coefficients[k - 1] += inverse_factorial * damping * neighbours
         inverse_factorial *= INVERSE_INTEGERS[k]
         coefficients[k] = inverse_factorial * medium.inverse_dx2 * neighbours
@@ -344,8 +345,8 @@ def predict_law_kink(coefficients, slopes, degree, now, step_end):
     """
     if evaluate_polynomial(coefficients, degree, now) < -ROUNDING_TOLERANCE:
         return find_threshold_crossing(coefficients, slopes, degree, now, step_end)
-    # The block is at the kink now. If the polynomial rises, the block passes it at this instant. To
-    # find its turning point, the coefficients of its slope are computed, too.
+    # The block is at the kink now. If the polynomial rises, the block passes it at this instant.
+    # `find_turning_point` also fills ``slopes``.
     turn = find_turning_point(coefficients, slopes, degree, now, step_end)
     if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
         return now
