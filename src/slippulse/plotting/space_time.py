@@ -117,6 +117,7 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     margin = max(MARGIN_FRACTION * (highest - lowest), run.attrs["dx"])
     sample_count = run.sizes.get("sample_position", 0)
     if sample_count < 2:
+        # A single sample covers no range.
         return float(lowest - margin), float(highest + margin)
     first_sample, last_sample = run["sample_position"].values[[0, -1]]
     # The margin is at least three intervals between samples wide, so that it contains samples.

@@ -482,16 +482,17 @@ def _elastic_constants(scene: LayerScene, dt_over_h: float) -> Elastic:
 
     dt_over_h : time step divided by the side of a cell
     """
-    # Stiffness of s_yy: 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
+    # Modulus of s_yy: 0 on a free top row, where the normal stress stays 0, and 1 on all others.
     normal = np.ones(scene.cells + 1)
     normal[-1] = 1.0 if scene.top == "held" else 0.0
-    # The bottom row has only a value above it, and the top row only one below it. This value counts
-    # twice, since these rows have half the height.
+    # Weights of the values of v_y and s_xy half a cell above and below each row. The bottom row has
+    # only a value above it, and the top row only one below it. This value counts twice, since these
+    # rows have half the height.
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[0], above[-1] = 2.0, 0.0
     below[0], below[-1] = 0.0, 2.0
-    # Stiffness of a normal stress against strain in the other direction. On a free row, s_yy = 0
-    # makes ``direct``, the stiffness of s_xx, smaller than 1.
+    # Modulus of a normal stress for strain in the other direction. The modulus of s_xx for strain
+    # in its own direction, ``direct``, is 1, but less on a free row, where s_yy stays 0.
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
