@@ -93,6 +93,7 @@ def start_sliding(block_change, medium, motion, block, now, top):
     # two above ``top`` only make the others more exact when they are advanced in time.
     for k in range(1, top + 1):
         block_change[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
+        # Row ``top`` is the last row of w.
         if k < top:
             block_change[k + 2] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1])
     # Advance them from the start of the step to the time of the release.

@@ -102,6 +102,8 @@ class Lattice:
         Some of them may lie at distant bumps of the pre-stress.
         """
         blocks_of_reach = int(np.ceil(self.scene.prestress.nucleation_reach / self.scene.dx))
+        # The kernel needs EDGE_BLOCKS blocks beyond them on each side, and the last line adds some
+        # more for safety.
         blocks_per_side = blocks_of_reach + arrays.EDGE_BLOCKS
         blocks_needed = blocks_per_side if self.is_mirrored else 2 * blocks_per_side
         while blocks_needed > self.size - arrays.EDGE_BLOCKS:

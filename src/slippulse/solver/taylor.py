@@ -384,10 +384,10 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
-    # The event changes the time derivatives (slopes) of the viscous dissipation and of the power of
-    # friction. The first is the time derivative of beta/dx times the sum of (v_{i+1} - v_i)^2 over
-    # all pairs of neighbours, hence the factor 2. On a mirrored lattice each pair counts twice, and
-    # each block too, except block 1 on the axis.
+    # The event changes the slopes (time derivatives) of the viscous dissipation and of the power of
+    # friction. The first power is beta/dx times the sum of (dv)^2 over all pairs of neighbours, and
+    # its slope is 2 beta/dx times the sum of dv da, of which ``effect`` has the change. On a
+    # mirrored lattice each pair counts twice, and each block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
