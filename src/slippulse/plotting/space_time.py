@@ -207,6 +207,7 @@ def draw_profile(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     if in_si:
         _mark_strengths(axes, rows_by_role["strength"])
     else:
+        # Kinetic friction is at 0.
         axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
     axes.margins(x=0.12)

@@ -349,15 +349,15 @@ def add_damping(elastic, earlier, fields, total, first, last):
 
     earlier : stresses one step before, which are replaced by those of ``fields``
     """
-    pairs = (
+    stresses = (
         (earlier.sxx, fields.sxx, total.sxx),
         (earlier.syy, fields.syy, total.syy),
         (earlier.sxy, fields.sxy, total.sxy),
     )
-    for before, now, sum_of_both in pairs:
+    for before, now, with_damping in stresses:
         for j in range(now.shape[0]):
             for i in range(first - 1, last + 1):
-                sum_of_both[j, i] = now[j, i] + elastic.damping * (now[j, i] - before[j, i])
+                with_damping[j, i] = now[j, i] + elastic.damping * (now[j, i] - before[j, i])
                 before[j, i] = now[j, i]
 
 
@@ -414,17 +414,18 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # The first of its three groups of fields is ``fields``, which `advance_layer` changes in place.
     damped = damped_fields(elastic, fields)
     advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
-    # The energy is computed at the time of the velocities that are copied here. This needs the
-    # stresses half a step before, which are copied as well, and those half a step after, which the
-    # last step computes.
+    # The energy is computed one step before the end, at the time of the velocities that are copied
+    # here. This needs the stresses half a step before, which are copied as well, and those half a
+    # step after, which the last step computes.
     earlier = Fields._make(array.copy() for array in fields)
-    work_of_prestress, work_without_friction = fault.work.tolist()
+    # The net work is the work of the pre-stress minus that of friction.
+    work_of_prestress, net_work = fault.work.tolist()
     advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     # The energy balance holds only without damping, and if all columns are advanced.
     residual = math.nan
     if scene.beta == 0.0 and math.isinf(scene.trail):
-        missing = abs(energy - work_without_friction)
+        missing = abs(energy - net_work)
         # Without work nothing has moved.
         residual = missing / work_of_prestress if work_of_prestress else 0.0
     return LayerRun(

@@ -125,8 +125,9 @@ def _overestimate_of_viscous_loss(
 
     Let D_0 and D_1 be the dissipation at the start and at the end of a step of length h. The scheme
     counts h D_1. However, the damping force contains the velocity at the start of the step, and
-    acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4. Since a run starts at
-    rest, the differences of all its steps add up to 3 h D_1/4 of the last step.
+    acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4, and 3 h (D_1 - D_0)/4
+    less than counted. Since a run starts at rest, these differences add up to 3 h D_1/4, where D_1
+    is the dissipation at the end of the run.
 
     strain_rate : between each block and the next one (a bond), at the end
     bond_weights : 2 if a bond has a mirror image that is not in the arrays, 0 if it is one, else 1
