@@ -147,7 +147,8 @@ def settings_for(
     peak_width = prestress.narrowest
     if prestress.points:
         peak_width = min(peak_width, _nucleation_width(prestress))
-    # The step and the scatter of a grid study need the rest of the error.
+    # The time step needs the rest of the error, and so does the scatter of the error that a user
+    # estimates from runs on several lattices.
     demand = Demand(
         error=SPACING_FRACTION * float(accuracy),
         levels=_levels(prestress),
@@ -161,7 +162,7 @@ def settings_for(
         spacings = _spacings_with_springs(demand)
     else:
         spacings = _spacings_without_springs(demand, prestress)
-    # The spacing is rounded to three digits.
+    # The spacing is at most 1 (one thickness H), and is rounded to three digits.
     dx = float(f"{min(1.0, *spacings):.3g}")
     step = min(LARGEST_STEP, choose_step("localised", TAYLOR_ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}

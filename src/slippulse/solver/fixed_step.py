@@ -228,6 +228,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         start = tally.time
         if start >= limits.end_time:
             return END_REACHED
+        # A front has come near an end of the lattice if the block at this distance from it slides.
         if sliding[size - EDGE_BLOCKS] or (sliding[EDGE_BLOCKS - 1] and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
         dt, end = next_step(limits, start)
