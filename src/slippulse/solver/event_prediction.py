@@ -310,10 +310,11 @@ def predict_sticks(motion, prediction, first, last, may_stick_count, now, step_e
     w, end_velocity = motion.derivatives, motion.end_velocity
     coefficients = prediction.coefficients
     for i in range(first, last):
-        # A block may stick if its velocity is negative at the end of the step, or if the tangent of
-        # its velocity is. A velocity that is negative only in between has such a tangent.
-        tangent_after = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
-        if end_velocity[i] >= 0.0 and tangent_after >= 0.0:
+        # A block may stick if its velocity is negative at the end of the step. If it is negative
+        # only in between, it curves upwards, and its tangent at the start of the step is negative
+        # at the end.
+        tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
+        if end_velocity[i] >= 0.0 and tangent_at_end >= 0.0:
             continue
         if not math.isfinite(end_velocity[i]):
             return False

@@ -102,7 +102,10 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
 
 @kernel_function()
 def find_sliding_range(sliding, first, last):
-    """Return the first sliding block of first..last-1 and the block after the last sliding one."""
+    """Return the first sliding block of first..last-1 and the block after the last sliding one.
+
+    At least one of these blocks slides.
+    """
     while not sliding[first]:
         first += 1
     while not sliding[last - 1]:

@@ -308,12 +308,12 @@ def advance_node(elastic, fields, fault, i, dt, time):
             # The load is interpolated linearly in time between two steps.
             delay = excess / (excess - excess_before) if excess_before < 0.0 else 0.0
             fault.release_time[i] = time - delay * dt
-    # A force changes the velocity of a whole cell by dt/h times the force. Half a cell has half the
-    # mass, so that its velocity changes twice as much.
+    # The node slides. A force changes the velocity of a whole cell by dt/h times the force. Half a
+    # cell has half the mass, so that its velocity changes twice as much.
     velocity_before = fields.vx[0, i]
     velocity = velocity_before + 2.0 * elastic.dt_over_h * (load - strength)
     if velocity <= 0.0:
-        # A node that is released without excess load has not moved, and does not stick.
+        # The node sticks. A node that is released without excess load has not moved, and does not stick.
         if velocity_before > 0.0 and np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
             fraction = velocity_before / (velocity_before - velocity)
