@@ -130,7 +130,7 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
 def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     """Return the sampled slip velocity (role map), and its largest value (role largest).
 
-    Most samples that are 0 are left out.
+    At most MAP_SAMPLES positions and times are kept, and most samples that are 0 are left out.
     """
     lower, upper = drawn_range(run)
     x, times = run["sample_position"].values, run["sample_time"].values
@@ -140,9 +140,11 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     kept_times = spaced_indices(times.size, MAP_SAMPLES)
     # These three arrays have one row for each time and one column for each position.
     time, position = np.meshgrid(times[kept_times], x[kept_positions], indexing="ij")
-    # Rounding to four digits of the largest velocity keeps the table small. A colour shows fewer.
+    # Rounding to five digits of the largest velocity keeps the table small. A colour shows fewer.
     largest_velocity = np.nanmax(velocity)
-    decimals = 4 - int(np.floor(np.log10(largest_velocity)))
+    decimals = 0
+    if largest_velocity > 0.0:
+        decimals = 4 - int(np.floor(np.log10(largest_velocity)))
     rounded_velocity = velocity[np.ix_(kept_times, kept_positions)].round(decimals)
     # The first row and the first column are written in full, because they define the grid.
     is_written = rounded_velocity != 0.0

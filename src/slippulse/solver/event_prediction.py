@@ -370,22 +370,23 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
         w, coefficients = motion.derivatives, prediction.coefficients
         degree = top - law_kink.argument_row
         for i in range(first, last):
-            # The argument reaches the kink from below, or from above if the block is beyond it.
+            # Before the kink, the argument reaches it by rising. Beyond the kink, where the slope
+            # is 0, it would have to fall, which the sign -1 turns into a rise.
             is_before_kink = motion.weakening_slope[i] > 0.0
             sign = 1.0 if is_before_kink else -1.0
             if law_kink.argument_row == SLIP:
                 # Slip only grows, so that it does not come back to the kink.
                 is_out_of_reach = not is_before_kink
             else:
-                # A slip rate that passes the kink only for a part of the step has a tangent at the
-                # start of the step that passes it.
-                tangent_after = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
-                farthest = max(sign * motion.end_velocity[i], sign * tangent_after)
-                is_out_of_reach = farthest < sign * law_kink.argument_at_kink
+                # The slip rate is beyond the kink at the end of the step or, if it is so only in
+                # between and turns back, its tangent at the start of the step is beyond at the end.
+                tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
+                largest = max(sign * motion.end_velocity[i], sign * tangent_at_end)
+                is_out_of_reach = largest < sign * law_kink.argument_at_kink
             if is_out_of_reach:
                 continue
-            # The Taylor polynomial of the argument minus its value at the kink, times the sign, so
-            # that it rises to 0 in either case. Its term of power k is divided by k!.
+            # The Taylor polynomial of the argument minus its value at the kink, times the sign. It
+            # rises to 0 at the kink. Its coefficient of power k is derivative k, divided by k!.
             signed_inverse_factorial = sign
             for k in range(degree + 1):
                 coefficients[k] = signed_inverse_factorial * w[k + law_kink.argument_row, i]
@@ -393,7 +394,7 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
             # Slip is counted from the release. In a law of slip rate, slip_at_release is 0.
             argument_at_kink = motion.slip_at_release[i] + law_kink.argument_at_kink
             if law_kink.argument_row == SLIP:
-                # The table of derivatives does not contain the slip by events of the step yet.
+                # Slip in ``w`` does not contain the slip by events of the step yet.
                 argument_at_kink -= motion.event_slip[i]
             coefficients[0] -= sign * argument_at_kink
             time_of_kink = predict_law_kink(coefficients, prediction.slopes, degree, now, step_end)

@@ -108,8 +108,8 @@ def friction_at_stick(motion, law_kink, block):
 def switch_weakening(motion, law_kink, block):
     """Stop the weakening of a block that passes the kink, or start it again on the way back."""
     if law_kink is not None:
-        # The slope of the block is either 0 or that of the law, and takes the other value. Where the
-        # law has no friction, blocks have no kink to pass.
+        # The slope of the block is either 0 or that of the law, and takes the other value. (Where a
+        # law has no friction, blocks have no kink.)
         motion.weakening_slope[block] = law_kink.weakening_slope - motion.weakening_slope[block]
 
 

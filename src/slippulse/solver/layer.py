@@ -313,7 +313,8 @@ def advance_node(elastic, fields, fault, i, dt, time):
     velocity_before = fields.vx[0, i]
     velocity = velocity_before + 2.0 * elastic.dt_over_h * (load - strength)
     if velocity <= 0.0:
-        # The node sticks. A node that is released without excess load has not moved, and does not stick.
+        # The node sticks. Only if it has moved (not if it was released without excess load), this
+        # is recorded.
         if velocity_before > 0.0 and np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
             fraction = velocity_before / (velocity_before - velocity)
@@ -574,8 +575,9 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
     # The strain energy of normal stresses in plane strain, and that of shear stress. The square of
-    # a stress is its earlier value times its later value. Here lateral is 1 - gamma, the value of
-    # all rows except a free top, where it is 0.
+    # a stress is its earlier value times its later value. The modulus for strain in the other
+    # direction, ``lateral``, is 1 - gamma; the value 0 of a free top row is not used, since s_yy
+    # is 0 there.
     lateral = elastic.lateral.max()
     equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
     mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx

@@ -407,6 +407,9 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
 def finish_step(medium, motion, scratch, tally, order, h):
     """Advance slip, velocity and strain of all blocks that moved to the end of the step.
 
+    The accelerations are no longer needed. Until the end of this function, their row of ``w`` holds
+    the change of slip in the step, and is called SLIP_INCREMENT.
+
     Returns the largest velocity at the ends and the middles of the segments, which shows a blow-up.
 
     h : duration of the step
@@ -415,7 +418,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
     moved, step_events = scratch.moved, scratch.step_events
     fastest = 0.0
     # Advance the slip by the Taylor polynomials, and set the velocity to that at the end of the
-    # step. The row of the acceleration, SLIP_INCREMENT, receives the change of slip.
+    # step.
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.end_velocity, first, last, h, order)
@@ -439,8 +442,8 @@ def finish_step(medium, motion, scratch, tally, order, h):
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
-    # Row SLIP_INCREMENT is again the acceleration from here on. The next step computes it for
-    # sliding blocks; for a block that has stuck, it is 0.
+    # The row is the acceleration again. The next step computes it for sliding blocks, and a block
+    # that has stuck has none.
     for q in range(step_events.count.n):
         if step_events.stuck_block[q] >= 0:
             w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0
