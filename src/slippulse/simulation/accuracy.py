@@ -201,6 +201,7 @@ def _nucleation_width(prestress: Prestress) -> float:
     """
     x, tau = prestress.point_arrays
     highest_point, far_level = int(np.argmax(tau)), max(prestress.left, prestress.right)
+    # Only a pre-stress of 1 starts a rupture.
     if tau[highest_point] < 1.0:
         return math.inf
     has_fallen = tau <= far_level + math.exp(-0.5) * (tau[highest_point] - far_level)

@@ -155,7 +155,8 @@ def predict_release(medium, motion, prediction, block, now, step_end, top):
     excess_stress = evaluate_polynomial(coefficients, top, now)
     if excess_stress >= 0.0:
         return now, excess_stress + 1.0
-    # The positive terms alone bound the rise of the stress. Most searches for a root end here.
+    # The positive terms alone, at ``step_end``, bound the rise of the stress. In most calls they
+    # rule out a release, and no root is searched for.
     largest_rise = 0.0
     for k in range(top, 0, -1):
         largest_rise = step_end * (max(coefficients[k], 0.0) + largest_rise)

@@ -313,8 +313,8 @@ def advance_node(elastic, fields, fault, i, dt, time):
     velocity_before = fields.vx[0, i]
     velocity = velocity_before + 2.0 * elastic.dt_over_h * (load - strength)
     if velocity <= 0.0:
-        # The node sticks. Only if it has moved (not if it was released without excess load), this
-        # is recorded.
+        # The node sticks. This is recorded unless the node has not moved, because it was released
+        # at this step without excess load.
         if velocity_before > 0.0 and np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
             fraction = velocity_before / (velocity_before - velocity)

@@ -125,7 +125,7 @@ def advance_slip(w, velocity, first, last, step, order):
     half, third = step / 2.0, step / 3.0
     fourth, fifth = step / 4.0, step / 5.0
     for i in block_range(first, last):
-        # The parentheses that begin with w[4] and with w[3]. If k is 3, ``nested`` is the first one.
+        # The parentheses that begin with w[4] (if k is 3, it is ``nested``) and with w[3].
         from_fourth = w[4, i] + fifth * nested[i] if k == 4 else nested[i]
         from_third = w[3, i] + fourth * from_fourth
         increment = step * (w[1, i] + half * (w[2, i] + third * from_third))
