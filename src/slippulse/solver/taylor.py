@@ -519,8 +519,7 @@ def advance(  # noqa: C901, PLR0912
         if last >= size - EDGE_BLOCKS or (first <= EDGE_BLOCKS and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
 
-        # The step lasts from the time `start` to `end`, and has the length h. Times of events are
-        # counted from its start.
+        # The step lasts from `start` to `end`, and has the length h.
         h, end = next_step(limits, start)
         # Stage 2: the events that will happen within the step.
         if not predict_events(medium, motion, segments, prediction, tally, h, top):
