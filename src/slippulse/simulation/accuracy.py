@@ -219,7 +219,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
     """
     # The pre-stress varies over the first of these lengths, and leaf springs act over the second.
     nucleation_length = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
-    # The nucleation causes this part of the errors of T_trans and L_trans. It is divided by dx.
+    # The error of T_trans and L_trans because of the nucleation, divided by dx.
     nucleation_error_per_dx = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
     spacings = [nucleation_length / MIN_BLOCKS, demand.error / nucleation_error_per_dx]
     for level in demand.levels:

@@ -236,6 +236,7 @@ class Lattice:
         progress between two calls.
         """
         scene = self.scene
+        # The localised scheme updates only the blocks that slide.
         updates_per_step = np.count_nonzero(self.sliding) if self.localised else self.size
         steps = max(MAX_CALL_UPDATES / max(updates_per_step, 1), MIN_CALL_STEPS)
         return arrays.Limits(

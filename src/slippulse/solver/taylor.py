@@ -474,7 +474,7 @@ def apply_simultaneous_events(medium, motion, segments, scratch, history, end, l
                 motion.derivatives[k, block] = 0.0
             toggle_block(segments, block)
             record_stick(history, block, end)
-    # Releases.
+    # Releases. The next step computes the motion of these blocks.
     for q in range(due_count):
         toggle_block(segments, due[q])
         friction.begin_weakening(motion, medium.law_kink, due[q])
