@@ -186,8 +186,8 @@ def _levels(prestress: Prestress) -> list[float]:
 def _levels_of_table(prestress: Prestress) -> list[float]:
     """Return some levels, from low to high, of the pre-stress of a table in which fronts run."""
     tau = np.array([tau for _, tau in prestress.points])
-    # At lower pre-stress, no accuracy is promised. At 1 or more, all blocks slide from t = 0 on, and
-    # there is no front.
+    # At lower pre-stress, no accuracy is promised. At 1 or more, all blocks slide from t = 0 on,
+    # and there is no front.
     covered = tau[(tau >= LOWEST_PRESTRESS) & (tau < 1.0)]
     if not covered.size:
         return []
