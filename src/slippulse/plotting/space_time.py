@@ -288,6 +288,7 @@ def draw_edges(axes: Axes, rows_by_role: dict[str, pd.DataFrame], end: float) ->
     # Beyond the front, and between two ruptures (NaN), blocks are at rest until the end.
     release = np.interp(positions, front["position"], front["time"], left=end, right=end)
     release = np.nan_to_num(release, nan=end)
+    # With this zorder, white lies above the map and below the lines.
     axes.fill_betweenx(positions, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(front["time"], front["position"], color=BLACK, linewidth=0.8, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()

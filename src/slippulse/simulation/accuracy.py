@@ -144,6 +144,7 @@ def settings_for(
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=MAX_DAMPING_RATIO)
     # Convert numbers of other types, such as integers or NumPy scalars.
     gamma, damping_ratio = float(gamma), float(damping_ratio)
+    # The smallest width of a Gaussian, or of the nucleation in a table.
     peak_width = prestress.narrowest
     if prestress.points:
         peak_width = min(peak_width, _nucleation_width(prestress))

@@ -61,6 +61,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         largest_velocity = max(1.0, float(np.max(solution.slip_velocity)))
         lowest_allowed = -MAX_NEGATIVE_VELOCITY[scene.scheme] * largest_velocity
         flags |= {
+            # No blocks means that there is no pulse.
             "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
             "died_out": died_out(solution),
             "first_stick_at_front": first_stick_at_front(scene, solution),

@@ -260,7 +260,8 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
     if medium.beta <= 0.0:
         return 0.0
     # At a release or a stick the velocity of the block is 0, and only its own acceleration changes.
-    # In both pairs, dv da is therefore minus the velocity of the neighbour times this change.
+    # In both pairs, dv da is therefore minus the velocity of the neighbour times this change. (At a
+    # kink of the law the change is 0.)
     neighbour_velocities = velocity_at(w, block + 1, top, now)
     # The left pair of the block on the axis is the mirror image of the right one.
     is_on_axis = medium.is_mirrored and block == 1
