@@ -87,12 +87,14 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
 
 
 def fast_sides(run: Mapping) -> set[str]:
-    """Return the sides on which the front has crossed only pre-stress of at least MIN_PRESTRESS.
+    """Return the sides on which the front was fast: its path has no pre-stress below MIN_PRESTRESS.
 
-    If the pre-stress is a table of points, its lowest crossed value is one of the measured numbers.
-    Otherwise, the profile is evaluated up to the end of the path. A side on which no front ran, or
-    whose front has an unknown path, is not among the returned sides.
+    In a lower pre-stress the front is hardly faster than the waves. A side on which no front ran,
+    or whose front has an unknown path, is not among the returned sides.
+
+    run : the row of a run in the measured table
     """
+    # If the pre-stress is a table of points, its lowest value on the path has been measured.
     if "lowest_prestress_left" in run:
         lowest = {side: run[f"lowest_prestress_{side}"] for side in ("left", "right")}
         # One of them is NaN if no front ran on this side. Both are NaN if the run has no table, but
@@ -101,7 +103,8 @@ def fast_sides(run: Mapping) -> set[str]:
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
     sides = set()
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        # The position of the front at the end, by the straight line that was fitted to its path.
+        # Otherwise the profile is evaluated up to the final position of the front, by the straight
+        # line that was fitted to its path.
         speed, intercept = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
         front = sign * (intercept + speed * run["end_time"])
         if math.isfinite(front):

@@ -14,7 +14,10 @@ MAX_LOSS, MAX_RELATIVE_LOSS = 0.02, 0.4
 
 
 def check_resolved(prestress: Prestress, dx: float) -> None:
-    """Raise ValueError if the blocks do not resolve the table, or miss a point that reaches 1.
+    """Raise ValueError if the blocks do not resolve the table of points of a pre-stress.
+
+    If the stress reaches 1 at a point, which then slips at once, it must also do so at one of the
+    blocks around it. The other values must, on the whole, be between those of the blocks around.
 
     dx : spacing of the blocks, which lie at its multiples
     """
@@ -31,7 +34,8 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
         raise refusal(
             f"prestress.points {tau[missed_point]:g} at x", float(x[missed_point]), allowed
         )
-    # The loss of a point is the amount by which it is above or below all of its three blocks.
+    # `level` is the table alone, without the nucleation peak. The loss of a point is the amount by
+    # which it is above or below all of its three blocks.
     at_blocks = prestress.level(neighbours)
     above_blocks = np.maximum(tau - at_blocks.max(axis=0), 0.0)
     below_blocks = np.maximum(at_blocks.min(axis=0) - tau, 0.0)

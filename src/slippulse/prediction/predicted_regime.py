@@ -24,6 +24,8 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
+    Theory knows the final regime only for a constant level, or steps, on each side.
+
     still_fraction : a point is at rest below this fraction of the largest slip velocity
     """
     profile = run.prestress

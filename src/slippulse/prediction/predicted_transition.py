@@ -64,24 +64,25 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
 
 
 def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
-    """Return the balance distance, the numbers of the transition, and those of the far pulse.
+    """Return the row of `predictions` for one run under a stress boundary.
 
-    The far pulse is the one that runs to the right, far from the nucleation. All numbers need a
-    pre-stress that is negative far to the left and 0 far to the right. Except for the balance
-    distance, they also need a single Gaussian between these levels. Without it, time and length of
-    the transition are NaN. Other numbers that cannot be computed are left out.
+    A number that theory does not have for this pre-stress is NaN, or missing.
 
     fraction : the transition is when the left front has covered this fraction of its way
     """
     row = {**NO_TRANSITION}
     profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
+    # A balance position needs a negative level far to the left and the level 0 far to the right.
     if far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0:
         balance_position = value_or_nan(partial(prestress_balance_position, profile))
         row["exact_balance_distance"] = -balance_position
+    # The other numbers also need a single Gaussian between these levels.
     width = _gaussian_width(profile)
     if width and profile.left < 0.0 and profile.right == 0.0:
-        find_arrest = partial(_arrest, profile.left, damping_ratio, run.release, fraction)
-        for_unit_width = value_or(find_arrest, NO_TRANSITION)
+        find_numbers = partial(
+            _numbers_for_unit_width, profile.left, damping_ratio, run.release, fraction
+        )
+        for_unit_width = value_or(find_numbers, NO_TRANSITION)
         # All lengths and times, and the velocity, are proportional to the width.
         row |= {name: value * width for name, value in for_unit_width.items()}
     return row
@@ -104,7 +105,9 @@ def _first_stick(
 
 
 @cache
-def _arrest(left: float, damping_ratio: float, release: str, fraction: float) -> dict[str, float]:
+def _numbers_for_unit_width(
+    left: float, damping_ratio: float, release: str, fraction: float
+) -> dict[str, float]:
     """Return the numbers of the transition under a stress boundary, and of the far pulse.
 
     The pre-stress is a Gaussian of width 1 between the level left and 0. The numbers are named as
