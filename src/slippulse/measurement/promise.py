@@ -146,7 +146,9 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
 
     Of each run that missed it, the worst number is reported with its relative uncertainty.
 
-    study : a grid study with the columns that `judge_promises` adds
+    study : a grid study with the columns that `judge_promises` adds: one row for each number
+        (column quantity) of each run (column point). It has an empty text in the column kept if
+        nothing was promised for this number.
     """
     if not math.isfinite(promise):
         return "the block spacing is user-defined, so no accuracy is promised"

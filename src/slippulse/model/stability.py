@@ -88,10 +88,11 @@ def accurate_step(
 def choose_step(scheme: str, order: int, *ratios: float) -> float:
     """Return the longest step, in units of dx, that is accurate, and stable with a margin.
 
+    order : order of a Taylor step; other schemes do not use it
     ratios : beta/dx, gamma dx^2 and, optionally, alpha dx (see `largest_step`)
     """
     stable = STABILITY_MARGIN * largest_step(scheme, order, *ratios)
-    # Only this scheme takes Taylor steps.
+    # The localised scheme takes Taylor steps. The others have no condition for accuracy.
     if scheme != "localised":
         return stable
     return min(stable, accurate_step(MAX_STEP_ERROR, order, *ratios))
