@@ -86,6 +86,8 @@ def read_stress_file(
 def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -> StressTable:
     """Read a file whose positions are in units of H and whose pre-stress is in stress drops.
 
+    x, prestress : names of the two columns; by default POSITION_NAMES and STRESS_NAMES
+
     Raises StressFileError if the file names another unit, or if the first or last value, which
     holds everywhere beyond the table, is not < 1.
     """
