@@ -229,6 +229,7 @@ def _integral_from(
 
     integral_from_right_end : the integral from the right end of the part to infinity
     """
+    # The background and the Gaussian at x = 0, and then the other Gaussians.
     within_part = _integral_in_interval(prestress, part.interval, position, part.right)
     for centre, amplitude, width in prestress.bumps:
         within_part += amplitude * _gaussian_area(position, part.right, centre, width)
@@ -236,10 +237,10 @@ def _integral_from(
 
 
 def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
-    """Yield parts of the intervals to the left of ``start``, from right to left.
+    """Yield short parts of the profile to the left of ``start``, from right to left.
 
-    Intervals are divided where the background changes its sign, and into short parts near
-    Gaussians. The pre-stress then changes its sign at most once within each part.
+    The intervals on which the background is linear are divided where it changes its sign, and into
+    short parts near Gaussians. The pre-stress then changes its sign at most once within each part.
     """
     positions: list[float] = []
     for centre, width in prestress.gaussians:
