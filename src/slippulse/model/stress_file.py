@@ -56,7 +56,7 @@ def read_stress_file(
 ) -> StressTable:
     """Read the columns of positions and pre-stress from a file.
 
-    x, prestress : the names of the two columns; by default one of POSITION_NAMES and of STRESS_NAMES
+    x, prestress : names of the two columns; by default one of POSITION_NAMES and of STRESS_NAMES
 
     In a CSV file the first row has the names, and the second may have units. A row that begins with
     # is a comment. Raises StressFileError, which names the file, the row and what is allowed.
