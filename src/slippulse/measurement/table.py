@@ -68,6 +68,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     attributes = DEFAULTS_OF_EXTRA_TERMS | run.attrs
     attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
+    # Further numbers that describe the pre-stress.
     row |= profile_columns(run, settings["front_window"])
     # Fronts, transition and trailing edge.
     for side in ("right", "left"):
@@ -99,6 +100,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     if "sample_velocity" in run and run["sample_position"].size > 1:
         row |= classify_regime(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
+            # Changes of the pulse where the pre-stress is constant, far from the nucleation.
             row |= far_field(run)
     return row, pulse
 
