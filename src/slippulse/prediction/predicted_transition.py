@@ -130,22 +130,22 @@ def _numbers_for_unit_width(
 def _half_width(crack: ArrestingCrack) -> float:
     """Return the width of the pulse far from the nucleation, at half of its peak velocity.
 
-    The pulse consists of waves that run to the right, and started on a front. The slip velocity of
-    the wave that started at x is half the integral of the pre-stress to the right of x. It is
-    largest where the pre-stress is 0, and half as large once on each side.
+    The pulse consists of waves that run to the right. Each starts at a position x when a front
+    arrives there. Its slip velocity is half the integral of the pre-stress to the right of x, which
+    is largest where the pre-stress is 0, and half as large at one position on each side.
     """
 
     def excess_over_half_peak(x: float) -> float:
         """Return the slip velocity of the wave that started at x, minus half the peak velocity."""
         return 0.5 * integral(crack.prestress, x, crack.end) - 0.5 * crack.peak_velocity
 
-    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0. To the
-    # right of crack.end it is 0 everywhere.
+    # The wave with the peak velocity starts where the left front becomes slower than the waves,
+    # since the pre-stress is 0 there. To the right of crack.end it is 0 everywhere.
     start_of_peak = crack.slow_start
     ahead = root_between(excess_over_half_peak, start_of_peak, crack.end, xtol=1e-12)
     rear = root_between(excess_over_half_peak, crack.balance_position, start_of_peak, xtol=1e-12)
-    # x - t does not change along a wave, which starts when a front arrives at x. The width is the
-    # difference of the two values.
+    # A wave keeps its value of x - t. The width is the difference of these values between the wave
+    # ahead, which starts on a fast front, and the wave at the rear, on the slow left front.
     ahead_minus_time = ahead - float(crack.fronts.arrival(ahead))
     rear_minus_time = rear - crack.time_at(rear)
     return float(ahead_minus_time - rear_minus_time)
