@@ -119,8 +119,9 @@ def judge_promises(
 ) -> pd.DataFrame:
     """Add to a grid study whether each of its numbers keeps the promised uncertainty.
 
-    study : the grid study, with one row for each number of each run
-    measured : the measured table at the finest spacing
+    study : the grid study, with one row for each number (quantity) of each run (point, counted
+        from 0)
+    measured : the measured table at the finest spacing, with the runs in this order
     promise : largest relative uncertainty; NaN for a user-defined spacing, which promises nothing
     fraction : under a stress boundary, the transition is measured when the left front has covered
         this fraction of the balance distance
