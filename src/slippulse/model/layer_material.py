@@ -198,6 +198,7 @@ class LayerMaterial:
         ----------
         values : float or array
         quantity : str
+            As in `convert_to_si`.
 
         Returns
         -------

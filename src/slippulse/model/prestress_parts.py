@@ -81,6 +81,7 @@ def check_order(x: np.ndarray) -> None:
 
     Rows are counted from 1 in the messages.
     """
+    # The index of the point before the first one that is too low. Its row is this index plus 1.
     before = first_true(np.diff(x) < 0.0)
     if before is not None:
         row, position = before + 2, float(x[before + 1])

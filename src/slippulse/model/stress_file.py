@@ -144,6 +144,7 @@ def _csv_rows(content: bytes) -> list[Row]:
         raise StressFileError(
             f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows"
         )
+    # The delimiter is None if spaces separate the cells.
     _, first_line = numbered_lines[0]
     delimiter = next((sign for sign in DELIMITERS if sign in first_line), None)
     return [Row(number, _cells(line, delimiter)) for number, line in numbered_lines]
