@@ -198,6 +198,7 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """
     if np.isnan(pulse.peak_velocity):
         return np.nan
+    # Positions relative to the front, and slip velocities, of the blocks on the right.
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     # The block that is nearest to the peak.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .checks import first_true, refusal
+from .checks import index_of_first_true, refusal
 from .prestress import Prestress
 
 # The loss of a point is the amount by which its value lies outside the range of the pre-stress at
@@ -28,7 +28,7 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     left, right = np.ceil(in_spacings) - 1.0, np.floor(in_spacings) + 1.0
     neighbours = dx * np.array([left, np.round(in_spacings), right])
     is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
-    missed_point = first_true((tau >= 1.0) & ~is_released)
+    missed_point = index_of_first_true((tau >= 1.0) & ~is_released)
     if missed_point is not None:
         allowed = f"a value >= 1 also at a block; blocks are at multiples of dx = {dx:g}"
         raise refusal(
