@@ -101,10 +101,10 @@ def fast_sides(run: Mapping) -> set[str]:
         # other runs of the sweep have one.
         if any(map(math.isfinite, lowest.values())):
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
+    # Otherwise the profile is evaluated up to the final position of the front, which follows from
+    # the straight line that was fitted to its path.
     sides = set()
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        # Otherwise the profile is evaluated up to the final position of the front, by the straight
-        # line that was fitted to its path.
         speed, intercept = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
         front = sign * (intercept + speed * run["end_time"])
         if math.isfinite(front):

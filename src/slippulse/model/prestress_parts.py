@@ -26,6 +26,7 @@ def convert_part(name: str, rows: Any) -> tuple[tuple[float, ...], ...]:
     name : "steps" or "bumps"
     rows : sequence with one row of numbers for each step or bump
     """
+    # The ranges are those of the numbers in a row, by their names.
     key, ranges = f"prestress.{name}", PART_RANGES[name]
     allowed = f"a list of [{', '.join(ranges)}]"
     try:

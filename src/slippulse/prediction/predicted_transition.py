@@ -71,17 +71,16 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     fraction : the transition is when the left front has covered this fraction of its way
     """
     row = {**NO_TRANSITION}
-    profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
     # A balance position needs a negative level far to the left and the level 0 far to the right.
-    if far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0:
-        balance_position = value_or_nan(partial(prestress_balance_position, profile))
-        row["exact_balance_distance"] = -balance_position
+    if not (far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0):
+        return row
+    balance_position = value_or_nan(partial(prestress_balance_position, run.prestress))
+    row["exact_balance_distance"] = -balance_position
     # The other numbers also need a single Gaussian between these levels.
-    width = _gaussian_width(profile)
-    if width and profile.left < 0.0 and profile.right == 0.0:
-        find_numbers = partial(
-            _numbers_for_unit_width, profile.left, damping_ratio, run.release, fraction
-        )
+    width = _gaussian_width(run.prestress)
+    if width:
+        left, damping_ratio = run.prestress.left, rounded_damping_ratio(run)
+        find_numbers = partial(_numbers_for_unit_width, left, damping_ratio, run.release, fraction)
         for_unit_width = value_or(find_numbers, NO_TRANSITION)
         # All lengths and times, and the velocity, are proportional to the width.
         row |= {name: value * width for name, value in for_unit_width.items()}
