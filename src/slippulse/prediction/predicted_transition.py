@@ -107,10 +107,10 @@ def _first_stick(
 def _numbers_for_unit_width(
     left: float, damping_ratio: float, release: str, fraction: float
 ) -> dict[str, float]:
-    """Return the numbers of the transition under a stress boundary, and of the far pulse.
+    """Return the numbers of the transition under a stress boundary, and those of the pulse.
 
-    The pre-stress is a Gaussian of width 1 between the level left and 0. The numbers are named as
-    the columns of `predictions`.
+    The pre-stress is a Gaussian of width 1 between the level left and 0. The pulse is measured far
+    from the nucleation. The numbers are named as the columns of `predictions`.
 
     fraction : the transition is when the left front has covered this fraction of its way
     """
