@@ -319,9 +319,10 @@ class Prestress(ExplainsRemovedNames):
     @property
     def symmetric(self) -> bool:
         """True if tau(-x) = tau(x), so that it is enough to simulate half of the lattice."""
-        # The first number of a step is its position, and that of a bump its centre.
-        parts = {*self.steps, *self.bumps}
-        mirrored_parts = {(-position, *others) for position, *others in parts}
+        # The first number of a step is its position, and that of a bump its centre. Lists instead
+        # of sets count equal bumps, which are added to each other.
+        parts = sorted([*self.steps, *self.bumps])
+        mirrored_parts = sorted((-position, *others) for position, *others in parts)
         return self.left == self.right and parts == mirrored_parts and self._symmetric_table
 
     @cached_property
