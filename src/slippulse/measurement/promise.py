@@ -75,8 +75,9 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
     # "beyond" has the level beyond the outermost step on the right.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
         names.add("largest_velocity")
-    # The left front becomes slower and slower. The lattice holds it up close to its final position,
-    # and also if the damping is too weak to remove oscillations of the lattice.
+    # The left front becomes slower and slower. Its time converges only if the lattice has not held
+    # it up ("resolved"), if it is not yet close to its final position, and if the damping removes
+    # the oscillations of the lattice.
     if run["boundary"] == "stress" and (
         run.get("transition_state") != "resolved"
         or fraction > MAX_COVERED_FRACTION

@@ -41,6 +41,7 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     below_blocks = np.maximum(at_blocks.min(axis=0) - tau, 0.0)
     losses = above_blocks + below_blocks
     rms_loss = float(np.sqrt(np.mean(losses**2)))
+    # A rough table may lose more, in proportion to its standard deviation.
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
         worst_point = int(np.argmax(losses))
         key = f"prestress.points: the blocks do not resolve the stress {tau[worst_point]:g} at x"
