@@ -14,6 +14,7 @@ from PIL import Image
 import slippulse as sp
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
+from slippulse.plotting import space_time
 from slippulse.plotting.style import COLOUR_CYCLE
 from slippulse.prediction.comparison import measured_table
 from slippulse_paper.configuration.expand import expand
@@ -296,3 +297,22 @@ def test_a_scene_shows_its_parameters():
     for name, value in PLAIN.attributes().items():
         assert f"<th>{name}</th>" in html
         assert isinstance(value, str) or f"<td>{value}</td>" in html
+
+
+def test_blocks_that_no_rupture_reaches_are_drawn_at_rest():
+    """A barrier at x = 8 stops the two ruptures that begin at x = 0 and at x = 16."""
+    barrier, second_nucleation = (8.0, -3.0, 1.0), (16.0, 0.65, 1.0)
+    profile = sp.Prestress(0.4, 0.4, peak=1.1, bumps=(barrier, second_nucleation))
+    run = sp.simulate(sp.Scene("displacement", profile, 8.0, 0.1, gamma=0.65, beta=0.01))
+    for rows in space_time.edge_rows(run):
+        at_barrier = rows.loc[abs(rows["position"] - 8.0) < 0.4, "time"]
+        assert len(at_barrier) > 2 and at_barrier.isna().all()
+
+
+def test_the_drawn_pre_stress_ends_with_the_drawn_positions():
+    """The rupture stays on the right of x = 0."""
+    profile = sp.Prestress(0.4, 0.4, peak=0.4, bumps=((20.0, 0.65, 1.0),))
+    run = sp.simulate(sp.Scene("displacement", profile, 5.0, 0.1, gamma=0.65, beta=0.01))
+    positions = space_time.prestress_rows(run)["position"]
+    assert (positions.min(), positions.max()) == space_time.drawn_range(run)
+    assert positions.min() > 0.0
