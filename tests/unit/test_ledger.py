@@ -37,6 +37,7 @@ from slippulse_paper.claims.transition_claims import (
     front_arrest_position,
     judge_rise_with_prestress,
     lattice_runs,
+    takes_longer,
     transition_diverges,
     transition_time_underestimated,
 )
@@ -333,6 +334,13 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     claim = transition_time_underestimated(StrongBarriers(), "underestimate")
     assert claim.verdict() == NONE
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
+
+
+def test_a_run_whose_front_has_not_moved_is_undecided():
+    runs = pd.DataFrame({"time": [0.0, 2.0, 1.0], "covered": [-0.0, 1.0, 2.0]})
+    assert takes_longer([runs]).decided == [None, True, False]
+    assert takes_longer([runs, runs.iloc[[0, 1, 1]]]).decided == [None, True, None]
+    assert takes_longer([runs], limit=0.5).decided == [None, False, False]
 
 
 def test_lattice_runs_of_several_release_rules_and_damping_ratios_are_not_mixed():

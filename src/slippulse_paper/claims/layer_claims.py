@@ -89,13 +89,16 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     """Judge that ruptures under a displacement boundary turn into steady pulses.
 
-    Each pulse of the part pulse is judged far away, by the same pulse of the part far.
+    The pulses of the part pulse are judged at the positions of the part far, where most of them
+    were followed. The template values are the numbers of `numbers_on_splits`.
     """
+    tolerance = evidence.tolerance(id)
     pulses = finest_rows(rows_at_station(evidence, LAST), "pulse")
-    decided = steady_on_two_grids(evidence, "far", evidence.tolerance(id))
-    # The part far has one more pulse, which belongs to the part step.
+    decided = steady_on_two_grids(evidence, "far", tolerance)
+    # The part far has one more pulse, which is not among the judged ones. It only shows how a pulse
+    # of the part step goes on.
     decided = decided[decided.index.isin(pulses.index)]
-    values = split_pulses(evidence, evidence.tolerance(id))
+    values = numbers_on_splits(evidence, tolerance)
     return Qualitative(decided=list(decided), template_values=values)
 
 
@@ -137,26 +140,26 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
 
     The crossing time passes between the arrival of the front and that of shear waves from the top.
     The parts free and held have the same pulses, with a top that may rise and with one that cannot.
+    Pulses with a held top are only shown for comparison.
     """
     rows = rows_at_station(evidence, LAST)
-    # The sliding time of each pulse, divided by its crossing time.
+    # The sliding time of each pulse with a free top, divided by its crossing time, should be 1.
     crossings = sliding_in_crossings(finest_rows(rows, "free"))
     deviations = (crossings - 1.0).abs()
     # The sliding time is as uncertain as the pulse width, which changes from the second finest to
     # the finest grid. The uncertainty is the largest of these changes, in crossing times.
     uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
     in_crossings = "sliding time divided by the time for a shear front to cross the layer"
-    compared = {
+    free_over_held = "sliding time with free top divided by that with held top"
+    ratios_by_words = {
         f"{in_crossings}, top free to rise": crossings,
         f"{in_crossings}, top held": sliding_in_crossings(finest_rows(rows, "held")),
-        "sliding time with free top divided by that with held top": times_longer_with_free_top(
-            rows
-        ),
+        free_over_held: times_longer_with_free_top(rows),
     }
     further = {}
-    for words, times in compared.items():
-        further[f"{words}: smallest"] = float(times.min())
-        further[f"{words}: largest"] = float(times.max())
+    for words, values in ratios_by_words.items():
+        further[f"{words}: smallest"] = float(values.min())
+        further[f"{words}: largest"] = float(values.max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
@@ -244,30 +247,39 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     """Return the pulses of the part far at the last station, with columns on how they split.
 
-    split_at, coarse_split_at : position at which the pulse splits on its finest and on its second
-        finest grid, divided by the factor by which pulses are wider than those at the largest
-        gamma; NaN if the pulse does not split
+    split_at, coarse_split_at, third_split_at : position at which the pulse splits on its finest,
+        second finest and third finest grid, divided by the factor by which pulses are wider than
+        those at the largest gamma; NaN if the pulse does not split, or if there is no such grid
+    splits_only_on_finest : True if the pulse splits on its finest grid, and on no other one
     cells_in_weakening : number of cells in gamma d_c, the length over which the strength falls
     is_narrow : True at the largest gamma, at which pulses are narrowest
     is_steady : True if `steady_on_two_grids` is True at this tolerance
     """
     rows = rows_at_station(evidence, LAST)
     followed = finest_rows(rows, "far")
-    on_second_finest = finest_rows(rows, "far", coarser=1).reindex(followed.index)
     gamma = followed.index.get_level_values("gamma")
     weakening = followed.index.get_level_values("weakening")
-    # Stations are farther away by this factor, too.
+    # Stations are farther away by the factor by which pulses are wider.
     stretch = followed["sample_position"] / followed["sample_position"].min()
+    split_at = [
+        finest_rows(rows, "far", coarser)["split_position"].reindex(followed.index) / stretch
+        for coarser in (0, 1, 2)
+    ]
+    # A position that is not NaN counts as one split.
+    split_count = rows[rows["part"] == "far"].groupby(RUN_COLUMNS)["split_position"].count()
+    splits_once = split_count.reindex(followed.index) == 1
     return followed.assign(
-        split_at=followed["split_position"] / stretch,
-        coarse_split_at=on_second_finest["split_position"] / stretch,
+        split_at=split_at[0],
+        coarse_split_at=split_at[1],
+        third_split_at=split_at[2],
+        splits_only_on_finest=splits_once & split_at[0].notna(),
         cells_in_weakening=gamma * weakening * followed["cells"],
         is_narrow=gamma == gamma.max(),
         is_steady=steady_on_two_grids(evidence, "far", tolerance).eq(True),
     )
 
 
-def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
+def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses split, and the numbers of `ranges_of_splits` and `poorly_resolved`.
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
@@ -277,6 +289,7 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     split : number of pulses of the part far that split on the finest grid
     step_energy, step_split : fracture energy of the one pulse of the part far that belongs to the
         part step and is not counted, and the position at which it splits
+    step_only_on_finest : 1 if that pulse splits on its finest grid only, and 0 otherwise
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
 
     tolerance : largest relative change of speed and slip of a steady pulse
@@ -296,6 +309,7 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
         "split": float(len(split)),
         "step_energy": float(step["fracture_energy"].min()),
         "step_split": float(step["split_at"].min()),
+        "step_only_on_finest": float(step["splits_only_on_finest"].all()),
         "damped": float(len(damped)),
         "damped_steady": float(damped.eq(True).sum()),
     }
@@ -311,8 +325,10 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
     narrow_gamma, narrow_energy : largest gamma and fracture energy of narrow pulses that split
     split_low, split_high : range of the positions at which narrow pulses split, on the finest grid
     coarse_split_low, coarse_split_high : the same range on the second finest grid
+    third_split_low, third_split_high : the same range on the third finest grid
     wide_gamma, wide_energy, wide_split_low, wide_split_high : the same numbers of wide pulses, on
         the finest grid
+    wide_only_on_finest : 1 if these wide pulses split on no other grid, and 0 otherwise
 
     split : rows of `followed_pulses` with the pulses that split on the finest grid
     """
@@ -324,10 +340,13 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
         "split_high": float(narrow["split_at"].max()),
         "coarse_split_low": float(narrow["coarse_split_at"].min()),
         "coarse_split_high": float(narrow["coarse_split_at"].max()),
+        "third_split_low": float(narrow["third_split_at"].min()),
+        "third_split_high": float(narrow["third_split_at"].max()),
         "wide_gamma": float(wide["gamma"].max()),
         "wide_energy": float(wide["fracture_energy"].max()),
         "wide_split_low": float(wide["split_at"].min()),
         "wide_split_high": float(wide["split_at"].max()),
+        "wide_only_on_finest": float(wide["splits_only_on_finest"].all()),
     }
 
 
@@ -484,10 +503,9 @@ def split_distances(evidence: Evidence) -> list[float]:
     """Return for each point of `layer_map` whose pulses would split the distance at which they do.
 
     A point is a pair of gamma and fracture energy. Pulses of the part far are followed farther than
-    those of the map, and some of them split. A pulse splits more easily if its fracture energy is
-    smaller. So the pulses of a point would split if, on any grid, a pulse of the part far splits
-    that has the same gamma and pre-stress, and at least the fracture energy of the point. The
-    smallest distance at which such a pulse splits counts.
+    those of the map. We assume that a pulse of the map would split if a pulse of the part far with
+    the same gamma and pre-stress splits on any grid, and if its fracture energy is equal or larger,
+    because pulses split more easily at a smaller one. The smallest distance of such splits counts.
     """
     points = evidence.tables["layer_map"]
     far = rows_at_station(evidence, LAST).query("part == 'far'").dropna(subset=["split_position"])
@@ -662,13 +680,13 @@ def largest_speeds(evidence: Evidence) -> dict[str, float]:
 def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
-    The numbers of `split_pulses`, which say how many of them split and where, are among these.
+    The numbers of `numbers_on_splits`, which say how many of them split and where, are among these.
 
     from_near_slip : largest relative change of the slip between the first and the last station, of
         pulses that do not split
     drawn_split : position at which the pulse that a figure shows splits
     """
-    numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
+    numbers = numbers_on_splits(evidence, evidence.tolerance("layer_regimes"))
     numbers["drawn_split"] = split_of_drawn_pulse(evidence)
     # With an infinite tolerance, a pulse counts as steady if it does not split and if no point
     # slides again behind it.

@@ -77,7 +77,8 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     of regimes, and values of expressions over the runs of the first sweep.
 
     keys : fields of the rule (`Always`), such as the sweeps, the condition that must hold (holds),
-        and the regimes of exact solutions in which it holds (ends)
+        the condition under which lattices can decide (decidable), and the regimes of exact
+        solutions in which the claim holds (ends)
     """
     rule = Always(**keys)
     # The condition may contain {tolerance}, the tolerance of the claim, and {steady}, the largest
@@ -88,7 +89,9 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
         holds = f"regime in {rule.ends}"
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
-        decided += evidence.holds_in_runs(sweep, rule.where, holds, rule.decidable, rule.ends)
+        decided += evidence.holds_in_runs(
+            sweep, where=rule.where, holds=holds, decidable=rule.decidable, ends=rule.ends
+        )
     first_sweep = evidence.tables[rule.sweeps[0]]
     further = {
         words: float(value_of(first_sweep, expression))

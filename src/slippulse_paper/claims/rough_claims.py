@@ -10,13 +10,6 @@ import pandas as pd
 from .evidence import Evidence
 from .kinds import Qualitative
 
-# Columns that the texts quote of three ensembles under a stress boundary: the one with the roughest
-# pre-stress, the one with the smoothest, and the one with the highest level.
-QUOTED_COLUMNS = {
-    "rough": ("deviation", "survival", "low", "high", "predicted", "stop"),
-    "quiet": ("deviation", "velocity_deviation", "velocity_predicted"),
-    "above": ("level", "pulses", "deaths", "cracks"),
-}
 # Columns that name an ensemble.
 FIELD_COLUMNS = ["level", "deviation", "correlation_length", "hurst"]
 # Ensembles with fewer deaths have death rates with wide confidence intervals.
@@ -93,7 +86,6 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
     confidence, tail_... : from runs over a long distance, confidence level and interval of the
         exponent with which the survival of pulses falls as a power of the distance
-    rough_..., quiet_..., above_... : the columns QUOTED_COLUMNS of three ensembles
 
     The others are explained in the functions that are called.
     """
@@ -112,15 +104,27 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
         "tail_low": long_distance["exponent_low"],
         "tail_high": long_distance["exponent_high"],
     }
-    quoted = {
-        "rough": stress.loc[stress["deviation"].idxmax()],
-        "quiet": stress.loc[stress["deviation"].idxmin()],
-        "above": stress.loc[stress["level"].idxmax()],
-    }
-    for name, ensemble in quoted.items():
-        numbers |= {f"{name}_{column}": ensemble[column] for column in QUOTED_COLUMNS[name]}
-    numbers |= balance_numbers(checks)
+    numbers |= quoted_stress_ensembles(stress) | balance_numbers(checks)
     return {name: float(value) for name, value in numbers.items()}
+
+
+def quoted_stress_ensembles(stress: pd.DataFrame) -> dict[str, float]:
+    """Return the numbers that the texts quote on three ensembles under a stress boundary.
+
+    The ensembles are the one with the largest standard deviation of the pre-stress (rough), the one
+    with the smallest (quiet), and the one with the highest level (above).
+    """
+    rough = stress.loc[stress["deviation"].idxmax()]
+    rough = rough[["deviation", "survival", "low", "high", "predicted", "stop"]]
+    quiet = stress.loc[stress["deviation"].idxmin()]
+    quiet = quiet[["deviation", "velocity_deviation", "velocity_predicted"]]
+    above = stress.loc[stress["level"].idxmax()]
+    above = above[["level", "pulses", "deaths", "cracks"]]
+    return {
+        **rough.add_prefix("rough_"),
+        **quiet.add_prefix("quiet_"),
+        **above.add_prefix("above_"),
+    }
 
 
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
