@@ -259,7 +259,7 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     followed = finest_rows(rows, "far")
     gamma = followed.index.get_level_values("gamma")
     weakening = followed.index.get_level_values("weakening")
-    # Stations are farther away by the factor by which pulses are wider.
+    # The last station is farther away by the factor by which pulses are wider.
     stretch = followed["sample_position"] / followed["sample_position"].min()
     split_at = [
         finest_rows(rows, "far", coarser)["split_position"].reindex(followed.index) / stretch
@@ -280,16 +280,13 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 
 
 def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
-    """Return how many pulses split, and the numbers of `ranges_of_splits` and `poorly_resolved`.
+    """Return how many pulses split, and the numbers of three functions on subsets of the pulses.
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
         followed at the largest gamma
     followed, distance : number of these pulses that are also in the part far, and the distance to
         which they were followed there, at the largest gamma
     split : number of pulses of the part far that split on the finest grid
-    step_energy, step_split : fracture energy of the one pulse of the part far that belongs to the
-        part step and is not counted, and the position at which it splits
-    step_only_on_finest : 1 if that pulse splits on its finest grid only, and 0 otherwise
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
 
     tolerance : largest relative change of speed and slip of a steady pulse
@@ -298,23 +295,38 @@ def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
     followed = followed_pulses(evidence, tolerance)
     is_counted = followed.index.isin(pulses.index)
     # The parameters of the pulses become columns.
-    counted, step = followed[is_counted].reset_index(), followed[~is_counted]
+    counted, not_counted = followed[is_counted].reset_index(), followed[~is_counted]
     split = counted[counted["split_at"].notna()]
     damped = steady_on_two_grids(evidence, "damped", tolerance)
     numbers = {
         "pulses": float(len(pulses)),
+        # Pulses are followed least far at the largest gamma.
         "near_distance": float(pulses["sample_position"].min()),
         "followed": float(len(counted)),
         "distance": float(followed["sample_position"].min()),
         "split": float(len(split)),
-        "step_energy": float(step["fracture_energy"].min()),
-        "step_split": float(step["split_at"].min()),
-        "step_only_on_finest": float(step["splits_only_on_finest"].all()),
+        **split_of_step_pulse(not_counted),
         "damped": float(len(damped)),
         "damped_steady": float(damped.eq(True).sum()),
     }
     steady = counted[counted["is_steady"]]
     return numbers | ranges_of_splits(split) | poorly_resolved(steady)
+
+
+def split_of_step_pulse(step: pd.DataFrame) -> dict[str, float]:
+    """Return numbers on the split of the one pulse of the part far that belongs to the part step.
+
+    step_energy : its fracture energy
+    step_split : position at which it splits on its finest grid
+    step_only_on_finest : 1 if it splits on no other grid, and 0 otherwise
+
+    step : the row of this pulse in `followed_pulses`
+    """
+    return {
+        "step_energy": float(step["fracture_energy"].min()),
+        "step_split": float(step["split_at"].min()),
+        "step_only_on_finest": float(step["splits_only_on_finest"].all()),
+    }
 
 
 def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
@@ -451,15 +463,8 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     agrees = points["outcome"] == points["coarse_outcome"]
     points = points.assign(outcome=points["outcome"].where(agrees, "grids differ"))
     brittle = points[points["fracture_energy"] < 1.0]
-    tough = points[points["fracture_energy"] > 1.0]
     # The answer is None for outcomes that leave it open.
     decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
-    # The first three outcomes are reported even if no point has them.
-    point_counts = {"steady": 0, "growing": 0, "dying": 0} | dict(points["outcome"].value_counts())
-    further = {f"points that are {name}": float(count) for name, count in point_counts.items()}
-    further["points where the pulse dies, with more fracture energy than the layer can release"] = (
-        float((tough["outcome"] == "dying").sum())
-    )
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
     has_settled = max(differences) < evidence.tolerance(id)
@@ -471,9 +476,23 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     return Qualitative(
         decided=decided,
         condition=not has_settled or on_map["splitting_points"] > 0.0,
-        further=further,
+        further=points_by_outcome(points),
         template_values=template_values,
     )
+
+
+def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
+    """Return how many points of `layer_map` have each outcome, by words for the table of claims.
+
+    points : rows of the map, whose column outcome has "grids differ" if the two grids disagree
+    """
+    # The first three outcomes are reported even if no point has them.
+    counts = {"steady": 0, "growing": 0, "dying": 0} | dict(points["outcome"].value_counts())
+    by_words = {f"points that are {name}": float(count) for name, count in counts.items()}
+    # Fracture energies are divided by the largest energy that the layer can release.
+    dies_by_energy = (points["outcome"] == "dying") & (points["fracture_energy"] > 1.0)
+    words = "points where the pulse dies, with more fracture energy than the layer can release"
+    return by_words | {words: float(dies_by_energy.sum())}
 
 
 def map_numbers(evidence: Evidence) -> dict[str, float]:
@@ -527,18 +546,13 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
 
     Most of them come from the functions that are called, which explain them. The others are:
 
-    QUANTITY_low, QUANTITY_high : smallest and largest value of each quantity
+    QUANTITY_low, QUANTITY_high : smallest and largest value of a quantity over all its pulses
     QUANTITY_change : largest relative change by refinement, from the second finest to the finest
         grid
     map_NAME : a number of `map_numbers`
     crossings, brittle_energy : the constants CROSSINGS_OF_TRANSITION and BRITTLE_ENERGY
     crossing_high : longest time for which a point slides, divided by the crossing time
         (`sliding_in_crossings`)
-
-    Two of the quantities are for runs in which the top may rise (the part free):
-
-    free : time for which a point slides, divided by the crossing time
-    longer : time for which a point slides, divided by the time if the top cannot rise
     """
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
@@ -552,6 +566,8 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         **quantities_of_all_pulses(pulses),
         **quantities_at_one_level(pulses),
         **quantities_in_one_dimension(pulses),
+        # If the top may rise (part free), a point slides for these times. The first is divided by
+        # the crossing time, and the second by the time for which it slides if the top is held.
         "free": sliding_in_crossings(finest_rows(rows, "free")),
         "longer": times_longer_with_free_top(rows),
     }
@@ -571,6 +587,8 @@ def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
     gamma_low, thinnest_formula : smallest gamma, and pulse width by the formula at this gamma
     """
     at_level = with_varied_energy(pulses)
+    # All these pulses have the same level, so the formula gives them the same front speed. The
+    # width by the formula depends on the level and gamma only.
     return {
         "level": float(at_level.index.get_level_values("tau0")[0]),
         "formula_speed": float(at_level["paper_speed"].max()),
@@ -704,17 +722,15 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
 def split_of_drawn_pulse(evidence: Evidence) -> float:
     """Return where the pulse that a figure shows splits on its finest grid, in units of H.
 
-    NaN if it does not split.
+    NaN if it does not split on this grid.
     """
     # The figure shows the part field. The part far has the same pulse, which is followed farther.
     drawn = evidence.tables["layer"].query("part == 'field'").iloc[0]
-    far = rows_at_station(evidence, LAST).query("part == 'far'").sort_values("cells")
+    far = finest_rows(rows_at_station(evidence, LAST), "far").reset_index()
     parameters = ["gamma", "tau0", "weakening"]
     drawn_parameters = drawn[parameters].to_numpy(float)
     is_drawn = np.isclose(far[parameters].to_numpy(float), drawn_parameters).all(axis=1)
-    # The finest grid comes last.
-    positions = far["split_position"][is_drawn].dropna()
-    return float(positions.iloc[-1]) if len(positions) else np.nan
+    return float(far["split_position"][is_drawn].max())
 
 
 def spread_with_level(pulses: pd.DataFrame) -> float:

@@ -188,7 +188,8 @@ def fields_of_claim(
     claim : result about the claim
     entry : texts of the claim in manuscript/claims.yaml
     place : sections and figures of the paper with the claim; empty if there is none
-    explanations : see `all_claims`
+    explanations : a sentence for each verdict, for claims that are judged at many combinations of
+        choices
     """
     written = {name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN}
     fields = DEFAULT_FIELDS | written

@@ -159,12 +159,14 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
     worst_survival, worst_low, worst_high : fraction of its pulses that survive to the end, and the
         confidence interval of this fraction
     calm_rate : upper bound of the death rate over all ensembles without deaths
+
+    study : the table rough_prestress, which also has the survival curves of the ensembles
     """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
-    # The last row of its survival curve, whose rows are in the order of the distance.
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
     is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
+    # The rows of the survival curve are in the order of the distance.
     end_of_curve = study[is_curve & is_worst].iloc[-1]
     numbers = {"calm_rate": RULE_OF_THREE / calm["distance"].sum()}
     numbers |= {f"worst_{column}": worst[column] for column in ("level", "deviation", "stop")}

@@ -62,6 +62,7 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
     apart : distance between the fronts at the time at which the drawn arrow for T_trans ends
     """
     study = evidence.tables["published_figure"]
+    # The best fits to all readings of the left panel, with the arrows and without them.
     with_arrows = infer_parameters(study, part="arrows")["best"]
     without_arrows = infer_parameters(study)["best"]
     further: dict[str, float] = {}
@@ -77,6 +78,7 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
         # The left front is as far from x = 0.
         "apart": 2.0 * front_position,
     }
+    # The differences of both numbers between the fits belong to the two arrows.
     return Reading(
         tolerance=evidence.tolerance(id),
         chi_square=with_arrows["chi2"] - without_arrows["chi2"],
