@@ -102,8 +102,9 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
 
     It is the smallest change of this choice from a combination at which the claim holds to one at
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
-    single change with the largest effect. Effects on exact solutions rank above those on lattices.
+    single change with the largest effect.
     """
+    # Every change between exact solutions ranks above all changes between lattices.
     rank = attrgetter("exact", "size")
     ranked = sorted(changes(combinations), key=rank)
     # The dictionary keeps the last change of each choice, which ranks highest.

@@ -199,18 +199,17 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
 
 
 def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
-    """Return how near final slip is to that of steady pulses.
+    """Return how much the final slip of pulses differs from the slip of steady pulses.
 
-    short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
-        among those whose slip was recorded (the others have no memory)
-    ..._correlation_length : of the rough pre-stress
-    short_mean : median relative deviation of the slip from that of a steady pulse at the mean
-        pre-stress
-    smooth_local : the same for a steady pulse at the local pre-stress
-    memory : distance after which a pulse has forgotten a change of the pre-stress, at the level of
-        the first of these ensembles
+    Two ensembles are quoted: the one whose pre-stress has the shortest correlation length (short),
+    and the one with the longest (smooth).
+
+    short_mean : median relative difference from a steady pulse in the mean pre-stress
+    smooth_local : the same for a steady pulse in the local pre-stress
+    memory : distance after which a pulse of the short ensemble has forgotten a change of pre-stress
     forgotten : largest relative change of the slip by a bump that is farther away than the memory
     """
+    # Ensembles whose slip was not recorded have no value in the column memory.
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
     # In these rows the column distance has the distance from the bump, in units of the memory, and
