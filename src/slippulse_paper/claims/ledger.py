@@ -65,7 +65,7 @@ class Entry(SimpleNamespace):
         return "; ".join(part for part in parts if part)
 
     def _other_tolerances(self) -> list[str]:
-        """Return the verdicts at similar tolerances, and at the earlier tolerance.
+        """Return the verdicts at other tolerances nearby (TOLERANCE_BAND), and at the earlier one.
 
         A text is, for example, "with a tolerance below 0.14: not reproduced".
         """

@@ -127,10 +127,10 @@ def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return exact solutions at each combination of the choices that the paper leaves open.
 
-    The combination with which we drew figure 5 comes first, because claims show the numbers of the
-    first one.
+    The choices with which we drew figure 5 come first, because claims show the numbers of the first
+    combination.
     """
-    # The names of these choices, and their values in the first run of figure 5.
+    # The names of the open choices, and their values in the first run of figure 5.
     open_choices = ["release", "damping_ratio"]
     first_run = evidence.tables[f"scaling_{boundary}"].iloc[0]
     choices_of_figure: Chosen = {name: first_run[name] for name in open_choices}
@@ -140,17 +140,15 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
-    runs_of_figure: list[Runs] = []
-    other_runs: list[Runs] = []
+    exact = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
-        is_of_figure = choices_of_figure.items() <= choice.items()
-        group = runs_of_figure if is_of_figure else other_runs
         # Runs with a pre-stress at which blocks would slide back are left out. In a changed
         # configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
-        group.append(Runs(choice | {"solution": "exact"}, [rows]))
-    return runs_of_figure + other_runs
+        exact.append(Runs(choice | {"solution": "exact"}, [rows]))
+    # False comes before True, so the choices of figure 5 come first. Otherwise the order is kept.
+    return sorted(exact, key=lambda runs: not choices_of_figure.items() <= runs.choice.items())
 
 
 @cache
