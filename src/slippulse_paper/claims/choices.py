@@ -170,18 +170,21 @@ class OverChoices(Claim):
         settings, unsure : the choices in words, and the template values of the result, at the first
             combination whose verdict has a caveat, or at the first combination if none has
         """
-        holding, failing = [], []
-        at_last_release, with_caveat = [], []
+        deviations: dict[bool | None, list] = {True: [], False: [], None: []}
         for combination in self.combinations:
             result = combination.result
-            if result["holds"] is True:
-                holding.append(result["deviation"])
-            if result["holds"] is False:
-                failing.append(result["deviation"])
-            if combination.fraction == LAST_RELEASE_FRACTION and result["deviation"] is not None:
-                at_last_release.append(result["deviation"])
-            if result["verdict"] == rules.CAVEAT:
-                with_caveat.append(combination)
+            deviations[result["holds"]].append(result["deviation"])
+        at_last_release = [
+            combination.result["deviation"]
+            for combination in self.combinations
+            if combination.fraction == LAST_RELEASE_FRACTION
+            and combination.result["deviation"] is not None
+        ]
+        with_caveat = [
+            combination
+            for combination in self.combinations
+            if combination.result["verdict"] == rules.CAVEAT
+        ]
         in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
         settings = [
             f"{CHOICE_WORDS[name]} {text_of_value(value)}"
@@ -189,8 +192,8 @@ class OverChoices(Claim):
             if name in CHOICE_WORDS
         ]
         return self.shown.template_values | {
-            "holding": holding,
-            "failing": failing,
+            "holding": deviations[True],
+            "failing": deviations[False],
             "last": at_last_release,
             "changes": self.decisive,
             "choice_names": CHOICE_WORDS,

@@ -177,6 +177,7 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
     """Return numbers that show how accurate the measured death rates are.
 
     grid_..., grid_fine_... : spacing dx and number of deaths on the coarsest and the finest lattice
+    grid_pulses : number of pulses on each lattice
     near_..., far_... : death rate in the near and in the far half of a longer rough pre-stress, its
         confidence interval, and the distance at which the half ends (stop)
     """
