@@ -375,16 +375,23 @@ def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
     assert claim.sentence_values().get("holding", []) == []
 
 
-def test_a_pulse_without_a_steady_one_to_compare_with_is_undecided():
+def test_a_pulse_is_undecided_without_a_steady_one_and_if_it_has_not_formed():
     same = {"gamma": 0.65, "damping_ratio": 0.1, "exact_pulse_slip": 1.0, "paper_pulse_slip": 1.0}
     steady = pd.DataFrame({"left": [0.3, 0.6], "pulse_slip": 1.0}).assign(**same)
-    perturbed = pd.DataFrame({"beyond": [0.3, 0.6, 0.9], "pulse_slip": [1.0, 1.1, 1.0]})
+    perturbed = pd.DataFrame(
+        {
+            "beyond": [0.3, 0.6, 0.9, 0.6, 0.6],
+            "pulse_slip": [1.0, 1.1, 1.0, NAN, NAN],
+            # The run of the fourth rupture ends when it is still a crack. The fifth pulse has died.
+            "transition_time": [4.0, 4.0, 4.0, NAN, 4.0],
+        }
+    )
     tables = {PERTURBED: [perturbed.assign(**same)] * 3, UNPERTURBED: [steady] * 3}
     evidence = SimpleNamespace(
         tolerance=lambda id: 0.01, lattices=lambda *simulations: tables[simulations]
     )
     judged = perturbed_pulses_settle(evidence, "perturbed_pulses_settle")
-    assert judged.decided == [True, False, None]
+    assert judged.decided == [True, False, None, None, False]
     assert judged.further["largest deviation of the slip"] == pytest.approx(0.1)
 
 

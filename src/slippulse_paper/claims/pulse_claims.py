@@ -237,9 +237,11 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
         final_slips = pulses[["pulse_slip"]].to_numpy()
         deviations = (final_slips / steady_slips - 1.0).abs()
         is_settled = deviations["pulse_slip"] <= evidence.tolerance(id)
-        # The answer stays open if a changed configuration has no steady pulse to compare with.
-        has_steady_pulse = steady_slips["pulse_slip"].notna()
-        answers_by_lattice.append(is_settled.astype(object).where(has_steady_pulse, None))
+        # The answer stays open if a changed configuration has no steady pulse to compare with, or
+        # if its run ends before the first stick, at which a crack turns into a pulse.
+        has_become_pulse = pulses["transition_time"].notna().to_numpy()
+        is_decided = steady_slips["pulse_slip"].notna() & has_become_pulse
+        answers_by_lattice.append(is_settled.astype(object).where(is_decided, None))
         deviations_by_lattice.append(deviations)
     on_finest, on_middle, _ = answers_by_lattice
     largest = deviations_by_lattice[0].max()
