@@ -167,8 +167,8 @@ class OverChoices(Claim):
         last : deviations at the combinations at which the transition ends at the last release
         changes : the changes of choices on which the verdict depends
         choice_names : words for each choice
-        settings, unsure : the choices in words, and the template values of the result, at the first
-            combination whose verdict has a caveat, or at the first combination if none has
+        settings, unsure : the choices in words, and the template values of the result, at the
+            combination of `_in_doubt`
         """
         deviations: dict[bool | None, list] = {True: [], False: [], None: []}
         for combination in self.combinations:
@@ -180,12 +180,7 @@ class OverChoices(Claim):
             if combination.fraction == LAST_RELEASE_FRACTION
             and combination.result["deviation"] is not None
         ]
-        with_caveat = [
-            combination
-            for combination in self.combinations
-            if combination.result["verdict"] == rules.CAVEAT
-        ]
-        in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
+        in_doubt = self._in_doubt()
         settings = [
             f"{CHOICE_WORDS[name]} {text_of_value(value)}"
             for name, value in in_doubt.choice.items()
@@ -200,6 +195,13 @@ class OverChoices(Claim):
             "settings": settings,
             "unsure": in_doubt.claim.template_values,
         }
+
+    def _in_doubt(self) -> Combination:
+        """Return the first combination whose verdict has a caveat; the first one if none has."""
+        for combination in self.combinations:
+            if combination.result["verdict"] == rules.CAVEAT:
+                return combination
+        return self.combinations[0]
 
 
 def over_choices(

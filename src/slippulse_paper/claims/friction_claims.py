@@ -114,7 +114,6 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
 
     Pulses at the strongest weakening and the strongest strengthening with slip rate
     (STRONGEST_RATES) are compared with pulses at constant friction and the same pre-stress level.
-
     The sentences of the claim quote `speeds_under_slip_weakening`.
     """
     # The rows with this role are simulated pulses. The column over_critical and STRONGEST_RATES

@@ -139,8 +139,7 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
     """Judge that a point slides for one crossing time also if the top of the layer may rise.
 
     The crossing time passes between the arrival of the front and that of shear waves from the top.
-    The parts free and held have the same pulses, with a top that may rise and with one that cannot.
-    Pulses with a held top are only shown for comparison.
+    The part free has pulses with such a top.
     """
     rows = rows_at_station(evidence, LAST)
     # The sliding time of each pulse with a free top, divided by its crossing time, should be 1.
@@ -149,24 +148,32 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
     # The sliding time is as uncertain as the pulse width, which changes from the second finest to
     # the finest grid. The uncertainty is the largest of these changes, in crossing times.
     uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
-    in_crossings = "sliding time divided by the time for a shear front to cross the layer"
-    free_over_held = "sliding time with free top divided by that with held top"
-    ratios_by_words = {
-        f"{in_crossings}, top free to rise": crossings,
-        f"{in_crossings}, top held": sliding_in_crossings(finest_rows(rows, "held")),
-        free_over_held: times_longer_with_free_top(rows),
-    }
-    further = {}
-    for words, values in ratios_by_words.items():
-        further[f"{words}: smallest"] = float(values.min())
-        further[f"{words}: largest"] = float(values.max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(crossings.median()), uncertainty),
-        further=further,
+        further=ranges_of_sliding_times(rows),
     )
+
+
+def ranges_of_sliding_times(rows: pd.DataFrame) -> dict[str, float]:
+    """Return ranges of sliding times by words for the table of claims.
+
+    The parts free and held have the same pulses, with a top that may rise and with one that cannot.
+    """
+    in_crossings = "sliding time divided by the time for a shear front to cross the layer"
+    free_over_held = "sliding time with free top divided by that with held top"
+    ratios_by_words = {
+        f"{in_crossings}, top free to rise": sliding_in_crossings(finest_rows(rows, "free")),
+        f"{in_crossings}, top held": sliding_in_crossings(finest_rows(rows, "held")),
+        free_over_held: times_longer_with_free_top(rows),
+    }
+    ranges = {}
+    for words, values in ratios_by_words.items():
+        ranges[f"{words}: smallest"] = float(values.min())
+        ranges[f"{words}: largest"] = float(values.max())
+    return ranges
 
 
 def times_longer_with_free_top(rows: pd.DataFrame) -> pd.Series:
@@ -237,11 +244,18 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
         is_steady = (change < tolerance).all(axis=1) & (pulses["sliding_again"] == 0.0)
         is_steady_on_grids.append(is_steady)
     on_finest, on_second_finest = is_steady_on_grids
-    # The position is NaN on a grid on which the pulse does not split.
-    split_count = at_last[at_last["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
-    never_splits = split_count.reindex(on_finest.index) == 0
+    never_splits = number_of_grids_with_split(at_last, part).reindex(on_finest.index) == 0
     is_decided = (on_finest == on_second_finest) & never_splits
     return on_finest.astype(object).where(is_decided, None)
+
+
+def number_of_grids_with_split(rows: pd.DataFrame, part: str) -> pd.Series:
+    """Return on how many grids each pulse of a part splits.
+
+    rows : rows of all parts and grids, at one station
+    """
+    # The position is NaN on a grid on which the pulse does not split.
+    return rows[rows["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
 
 
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
@@ -261,18 +275,18 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     weakening = followed.index.get_level_values("weakening")
     # The last station is farther away by the factor by which pulses are wider.
     stretch = followed["sample_position"] / followed["sample_position"].min()
+    # Positions on the finest, the second finest and the third finest grid. A pulse without such a
+    # grid gets NaN.
     split_at = [
         finest_rows(rows, "far", coarser)["split_position"].reindex(followed.index) / stretch
         for coarser in (0, 1, 2)
     ]
-    # A position that is not NaN counts as one split.
-    split_count = rows[rows["part"] == "far"].groupby(RUN_COLUMNS)["split_position"].count()
-    splits_once = split_count.reindex(followed.index) == 1
+    splits_on_one_grid = number_of_grids_with_split(rows, "far").reindex(followed.index) == 1
     return followed.assign(
         split_at=split_at[0],
         coarse_split_at=split_at[1],
         third_split_at=split_at[2],
-        splits_only_on_finest=splits_once & split_at[0].notna(),
+        splits_only_on_finest=splits_on_one_grid & split_at[0].notna(),
         cells_in_weakening=gamma * weakening * followed["cells"],
         is_narrow=gamma == gamma.max(),
         is_steady=steady_on_two_grids(evidence, "far", tolerance).eq(True),

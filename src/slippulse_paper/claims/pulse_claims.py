@@ -73,8 +73,7 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     """Judge a claim whose rule is a condition that must hold in each run of some sweeps.
 
     In each run the two finest lattices decide. If they disagree or cannot decide, the exact
-    solution does (`Evidence.holds_in_runs`). The rule may also ask for additional numbers: counts
-    of regimes, and values of expressions over the runs of the first sweep.
+    solution does (`Evidence.holds_in_runs`).
 
     keys : fields of the rule (`Always`), such as the sweeps, the condition that must hold (holds),
         the condition under which lattices can decide (decidable), and the regimes of exact
@@ -92,15 +91,23 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
         decided += evidence.holds_in_runs(
             sweep, where=rule.where, holds=holds, decidable=rule.decidable, ends=rule.ends
         )
+    return Qualitative(decided=decided, further=numbers_of_rule(evidence, rule))
+
+
+def numbers_of_rule(evidence: Evidence, rule: Always) -> dict[str, float]:
+    """Return the additional numbers of a rule, by words for the table of claims.
+
+    They are values of expressions over the runs of the first sweep (numbers), and the number of
+    runs with each regime among those that meet a condition (counted).
+    """
     first_sweep = evidence.tables[rule.sweeps[0]]
-    further = {
-        words: float(value_of(first_sweep, expression))
-        for words, expression in rule.numbers.items()
-    }
+    by_words = {}
+    for words, expression in rule.numbers.items():
+        by_words[words] = float(value_of(first_sweep, expression))
     for words, condition in rule.counted.items():
         regimes = evidence.finest(*rule.sweeps, where=condition)["regime"].value_counts()
-        further |= {f"{words}: {regime}": float(count) for regime, count in regimes.items()}
-    return Qualitative(decided=decided, further=further)
+        by_words |= {f"{words}: {regime}": float(count) for regime, count in regimes.items()}
+    return by_words
 
 
 def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:

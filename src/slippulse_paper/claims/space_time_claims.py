@@ -66,10 +66,10 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
     with_arrows = infer_parameters(study, part="arrows")["best"]
     without_arrows = infer_parameters(study)["best"]
     further: dict[str, float] = {}
-    for words, fit in (("with", with_arrows), ("without", without_arrows)):
+    for word, fit in (("with", with_arrows), ("without", without_arrows)):
         for name, excess in excess_lengths(evidence, fit).items():
-            statement = evidence.readings[name]["statement"]
-            further[f"{statement}, drawn value minus value of the best fit {words} arrows"] = excess
+            arrow = evidence.readings[name]["statement"]
+            further[f"{arrow}, drawn value minus value of the best fit {word} arrows"] = excess
     readings = readings_by_name(evidence)
     # The path of the right front in the figure is a straight line.
     front_position = readings["intercept"] + readings["front_speed"] * readings["arrow_time"]
