@@ -637,8 +637,8 @@ def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     waves : fraction of the released energy that leaves as waves
     """
     gamma = pulses.index.get_level_values("gamma")
-    # At s times the slip of the formula, the layer releases the energy 4 s (1 - s). The unit is the
-    # largest energy that it can release, by which the fracture energy is divided, too.
+    # If s is the slip divided by that of the formula, the layer releases the energy 4 s (1 - s).
+    # The unit is the largest energy that it can release, as for the fracture energy.
     relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
     released_energy = 4.0 * relative_slip * (1.0 - relative_slip)
     return {

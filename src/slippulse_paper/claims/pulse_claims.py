@@ -301,6 +301,7 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     claim = evidence.equation(id, in_zero_prestress, quantity="strain_left", predicted="0")
     return replace(
         claim,
+        # The claim shows in how many runs the additional requirement holds or fails.
         counts=changed_if_strained(claim.tolerance).counts(),
         extra_verdict=lambda tolerance: changed_if_strained(tolerance).verdict(),
     )
