@@ -167,8 +167,8 @@ class OverChoices(Claim):
         last : deviations at the combinations at which the transition ends at the last release
         changes : the changes of choices on which the verdict depends
         choice_names : words for each choice
-        settings, unsure : the choices in words, and the template values of the result, at the
-            combination of `_in_doubt`
+        settings, unsure : the choices in words, and the template values of the result, at the first
+            combination with a caveat (`_in_doubt`)
         """
         deviations: dict[bool | None, list] = {True: [], False: [], None: []}
         for combination in self.combinations:

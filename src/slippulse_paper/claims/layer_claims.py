@@ -294,7 +294,7 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 
 
 def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
-    """Return how many pulses split, and the numbers of three functions on subsets of the pulses.
+    """Return how many pulses split, where they split, and how well the grid resolves the others.
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
         followed at the largest gamma
@@ -302,6 +302,8 @@ def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
         which they were followed there, at the largest gamma
     split : number of pulses of the part far that split on the finest grid
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
+
+    The other numbers are explained in the functions that are called.
 
     tolerance : largest relative change of speed and slip of a steady pulse
     """

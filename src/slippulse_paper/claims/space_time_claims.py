@@ -78,7 +78,7 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
         # The left front is as far from x = 0.
         "apart": 2.0 * front_position,
     }
-    # The differences of both numbers between the fits belong to the two arrows.
+    # The chi-square and the degrees of freedom that the two arrows add.
     return Reading(
         tolerance=evidence.tolerance(id),
         chi_square=with_arrows["chi2"] - without_arrows["chi2"],
