@@ -394,8 +394,9 @@ def _solve_by_newton(
 ) -> np.ndarray:
     """Return the parameters at which monotonic polynomials have given levels, by Newton's method.
 
-    s is where the search starts. sign is the sign of the slope of each polynomial. Slopes of a size
-    below min_slope are replaced by it. coefficients are those of `value_and_slope`.
+    s is where the search starts, between -1 and 1. sign is the sign of the slope of each
+    polynomial. Smaller slopes than min_slope are replaced by it, so that steps are not too long.
+    coefficients have the polynomials on their last axis, and are given to `value_and_slope`.
     """
     parameters = s.copy()
     # From here on, all arrays are kept only for the polynomials that are not solved yet.

@@ -302,12 +302,13 @@ class DependenceDomains:
                   + (alpha - k (t - T))/2 E p at x_l - (alpha - k (t - T))/2 E p at x_r
                   + Int E d{ ... }/dy.
 
-        The second line, and p' at the ends, include the motion of the ends x_l and x_r. In the
-        integral, xi = t - y has the derivative -1 by y, and eta = t + y has the derivative 1. So
-        dz/dy is k [(xi - g) - (eta - h)], the derivative of the square bracket is dg + dh, and E
-        does not depend on y.
+        The second line, and p' at the ends, include the motion of the ends x_l and x_r, at which
+        z = 0, K = 1 and K' = -1/4. In the integral, xi = t - y has the derivative -1 by y, and
+        eta = t + y has the derivative 1. So dz/dy is k [(xi - g) - (eta - h)], the derivative of
+        the square bracket is dg + dh, and E does not depend on y.
         """
         k, alpha = self.stiffness, self.alpha
+        # The first line of the formula, divided by 2. Each further term has a factor k or alpha.
         strain = self._minus_mean_of_ends(static_solution, order=1)
         if k == alpha == 0.0:
             return strain
@@ -334,7 +335,8 @@ class DependenceDomains:
             z_slope = nodes.xi_minus_g - nodes.eta_minus_h
             return z_slope * (by_kernel + by_kernel_slope) + by_bracket
 
-        # The terms with alpha - k (t - T). At both ends K = 1 and K' = -1/4, because z = 0.
+        # The second line of the formula, divided by 2. Here p includes the factor E, and elapsed is
+        # t - T.
         p_left, p_right = self._decayed_at_ends(static_solution, order=0)
         elapsed_left, elapsed_right = self._elapsed_at_ends()
         terms_with_k = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)

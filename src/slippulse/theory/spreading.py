@@ -144,10 +144,11 @@ def spread(fast_front: FastFront, until: float) -> tuple[list[Stretch], list[tup
     unknown = []
     for stretch, side in product(stretches, SIDES):
         reason = str(stretch.end_reason[side])
+        # At its other reasons to end, such as the final time, the rupture remains known.
         if reason in REASONS_UNKNOWN:
             unknown.append((stretch.ends[side], REASONS_UNKNOWN[reason]))
-    overrun = _cut_overrunning_fronts(stretches)
-    return stretches, unknown + overrun
+    points_of_cuts = _cut_overrunning_fronts(stretches)
+    return stretches, unknown + points_of_cuts
 
 
 def _earliest_moving_front(stretches: list[Stretch]) -> tuple[Stretch, float] | None:

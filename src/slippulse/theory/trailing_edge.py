@@ -370,7 +370,7 @@ class PartWithEdge(Part):
         """
         k = np.searchsorted(knots.x, piece_starts)
         is_longer_in_all = knots.has_jump(k).all(axis=0)
-        # Shorter pieces are left as they are, because several of them may have a jump.
+        # If the pieces are short, each may have a jump of its own, and the interval is not changed.
         piece_length = piece_starts[1] - piece_starts[0]
         is_long = piece_length > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
         slow = k[:, is_longer_in_all & is_long]
