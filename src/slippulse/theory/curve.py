@@ -421,9 +421,9 @@ def _lowest_level_beyond(
 ) -> list[np.ndarray]:
     """Return, for each panel, the lowest level of this panel and of later ones in its region.
 
-    The result has one array for each region. A region ends at a restart of a front, where levels
-    have a maximum. A characteristic that meets the curve before this maximum is not followed beyond
-    it, so that panels of later regions do not count.
+    The result has one array for each region. A region ends at a restart, where a slow front became
+    faster than the waves again, so that levels have a maximum there. A characteristic that meets
+    the curve before this maximum is not followed beyond it, so that later regions do not count.
 
     levels : T + x at the right ends of the panels, from left to right, for characteristics that run
         to the right; T - x at the left ends, from right to left, for those that run to the left

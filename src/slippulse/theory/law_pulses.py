@@ -320,7 +320,8 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
     """Return slip and strain behind a front of speed v, as the result of scipy's `solve_ivp`.
 
     The integration goes from the front backwards, and ends where the slip stops. Events of the
-    result are this stop, and the peaks of slip velocity.
+    result are this stop, and the peaks of slip velocity. Strain here is the derivative of slip by
+    the distance behind the front, so that slip velocity is v times the strain.
     """
     # This module is slow to import.
     from scipy.integrate import solve_ivp
@@ -338,12 +339,9 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
         """
         # The evaluations are counted, because a stiff law would take for ever.
         if next(evaluation_numbers) == MAX_EVALUATIONS:
-            reason = (
-                f"computing the pulse takes more than {MAX_EVALUATIONS} evaluations of the "
-                f"friction law"
-            )
+            needed = f"the pulse needs more than {MAX_EVALUATIONS} evaluations of the friction law"
             allowed = "larger values, or weaker friction"
-            raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
+            raise ValueError(f"gamma: {gamma!r}, where {needed}; allowed: {allowed}")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *parameters)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]

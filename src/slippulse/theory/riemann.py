@@ -389,7 +389,7 @@ class DependenceDomains:
         function at nodes of the curve. If component_shape is (2,), it returns those of two
         functions, and the result has one row of integrals for each of them.
         """
-        # On a long curve the case of a constant kernel (1) has a faster way.
+        # Without stiffness and drag the kernel and E are 1, and long curves have a faster way.
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
         integrals = np.empty((*component_shape, self.xi.size))
@@ -398,7 +398,8 @@ class DependenceDomains:
         for start in range(0, order.size, POINTS_PER_CHUNK):
             points = order[start : start + POINTS_PER_CHUNK]
             integrals[..., points] = self._integrate_chunk(points, integrand, component_shape)
-        # A point on the curve at the end of a panel has an empty domain.
+        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
+        # next panel.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
 
     def _integrate_chunk(
@@ -415,6 +416,8 @@ class DependenceDomains:
         """
         curve = self.curve
         last_panel = self.right.panel[points]
+        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
+        # next panel.
         first_panel = np.minimum(self.left.panel[points], last_panel)
         start, stop = int(first_panel.min()), int(last_panel.max()) + 1
         needed_panels = slice(start, stop)

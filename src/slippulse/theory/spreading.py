@@ -90,15 +90,18 @@ class Stretch:
         The panels, and the point where they end, are given with this side turned to the right: for
         the left side they are mirrored at x = 0.
         """
-        new_panels = turned_to_right(side, panels)
-        self.panels = self.panels + new_panels if side > 0.0 else new_panels + self.panels
+        mirrored_panels = turned_to_right(LEFT, panels)
+        if side > 0.0:
+            self.panels = self.panels + panels
+        else:
+            self.panels = mirrored_panels + self.panels
         # Existing curves are extended, which is faster than to build them again from all panels.
         # The new panels are the last ones of the curve with this side turned to the right. In the
         # curve with the other side turned to the right they are mirrored, and come first.
         if side in self.curves and panels:
             self.curves[side] = self.curves[side].joined(Curve(panels))
         if -side in self.curves and panels:
-            self.curves[-side] = Curve(turned_to_right(LEFT, panels)).joined(self.curves[-side])
+            self.curves[-side] = Curve(mirrored_panels).joined(self.curves[-side])
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
@@ -249,6 +252,7 @@ def _advance_slow_front(fast_front: FastFront, stretch: Stretch, side: float, un
     # A front cannot stop in positive pre-stress. If it seems to, its motion is not known.
     if reason == "stops" and fast_front.prestress(side * end.x) > EQUALITY_TOLERANCE:
         reason = "positive_prestress"
+    # If none of these cases applies, the front is still slow, and its next panel is added later.
     if reason in END_REASONS:
         stretch.end_reason[side] = reason
     elif end.time >= until:

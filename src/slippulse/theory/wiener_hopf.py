@@ -311,7 +311,7 @@ def q_and_r(iw: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_d
     c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
     r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
     if gamma_dx2 == 0.0:
-        # Then there is no drag, either (a = 0), and 4 q^2 = (i w)^2.
+        # Drag is computed only together with leaf springs. So a = 0, and 4 q^2 = (i w)^2.
         return Roots(0.5 * iw, r)
     # d_1 and d_2 are a/2 -+ this root.
     root_of_q = np.sqrt(complex(0.25 * alpha_dx**2 - gamma_dx2))
