@@ -486,8 +486,9 @@ class Rupture(ExplainsRemovedNames):
         limits = [Limit(point.x, point.time, reason) for point, reason in self._unknown_points]
         for part in self._solved_parts:
             limits_of_part = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
-            # Slip is checked only up to the horizon of the limits that have been found so far.
-            horizon = partial(_horizon, limits + limits_of_part)
+            # Beyond the horizon the solution is not valid. It is the time at which, for a position
+            # x, the first wave arrives from one of the limits that have been found so far.
+            horizon = partial(_earliest_wave_arrival, limits + limits_of_part)
             for point in part.falling_slip(horizon):
                 limits_of_part.append(Limit(point.x, point.time, FALLING_SLIP))
             limits += limits_of_part
@@ -512,10 +513,10 @@ class Rupture(ExplainsRemovedNames):
         -------
         array, infinite where there is no such time
         """
-        return _horizon(self._limits, as_numbers("x", x))
+        return _earliest_wave_arrival(self._limits, as_numbers("x", x))
 
 
-def _horizon(limits: list[Limit], x: np.ndarray) -> np.ndarray:
+def _earliest_wave_arrival(limits: list[Limit], x: np.ndarray) -> np.ndarray:
     """Return the earliest time at which waves from one of the limits reach x."""
     horizons = [limit.time + np.abs(x - limit.x) for limit in limits]
     return np.min(horizons, axis=0, initial=np.inf)

@@ -296,9 +296,10 @@ class FreeBoundary:
             if not np.all(tau < 0.0):
                 return None
             return (self.known_prestress_integral + prestress_integral) / tau
+        # One row for each integral, and one column for each node: first those of the known curve,
+        # then those of the new panel. The slope is the derivative by the position of the front.
         kernel, kernel_slope = self.kernel_and_slope(x)
-        # The integrals over the known curve, from the entries to x0, and their derivatives by the
-        # position of the front.
+        # The integrals over the known curve, from the entries to x0, and their derivatives.
         known_count = self.known_t_plus_x.size
         over_known = (self.known_weights * kernel[:, :known_count]).sum(axis=1)
         over_known_slope = (self.known_weights * kernel_slope[:, :known_count]).sum(axis=1)

@@ -221,6 +221,7 @@ def _advance_fast_front(fast_front: FastFront, stretch: Stretch, side: float, un
     panels, end = fast_front.panels_to_right(Point(side * start.x, start.time), stop, until)
     if panels:
         stretch.add(side, panels, end)
+    # A front that ends for another reason has reached negative pre-stress, and is slow from now on.
     if end.time >= until:
         stretch.end_reason[side] = "duration"
     elif end.x >= stop:

@@ -134,6 +134,7 @@ class PartWithEdge(Part):
         curve = self.curve
         left, right = curve.edges[[0, -1]]
         if self.one_side:
+            # The part is symmetric, and is computed only at x >= 0.
             left = max(left, 0.0)
         # The fronts are followed from the position that was released first.
         just_before_end = self.until * (1.0 - EQUALITY_TOLERANCE)
@@ -506,7 +507,8 @@ class PartWithEdge(Part):
             x = self._positions_stuck_earlier(first)
             if not x.size:
                 break
-            self.knots = self._with_more_knots(self.knots, x, self.find_stick_times(x, first.time))
+            stick_times = self.find_stick_times(x, until=first.time)
+            self.knots = self._with_more_knots(self.knots, x, stick_times)
             first = self._first_at_knots()
         return first
 
