@@ -446,8 +446,8 @@ def _panels_of_crossings(
 
     There T + x rises to its value at the point (level). Regions, the parts of the curve between
     restarts, are searched from that of the point to the right. In the first region in which T + x
-    reaches the level, the panel is the last one on which it does so. Also return a mask that is
-    False for points without a panel; for these the last panel is returned.
+    reaches the level, it is the panel on which T + x rises to the level for the last time. Also
+    return a mask that is False for points without a panel; for these the last panel is returned.
 
     edges : ends of the panels
     lowest_levels : for each region and each of its panels, the lowest T + x at the right ends of

@@ -184,6 +184,8 @@ def _has_positive_integrand(
     negative_part = np.maximum(-curve.source, 0.0)
     integral_to_begin, integral_to_end = _integrals_from_left_end(negative_part, ends)
     is_past_positive = integral_to_end - integral_to_begin <= 0.0
+    # The largest differences of xi = t - x and eta = t + x from a point between a and b to a point
+    # of the curve: xi falls, and eta rises, from left to right.
     d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
     d_eta = time + b - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
     return is_past_positive & (k * d_xi * d_eta < SQUARED_FIRST_ZERO)

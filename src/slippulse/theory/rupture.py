@@ -132,9 +132,9 @@ class Rupture(ExplainsRemovedNames):
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
         """Return the connected part of the rupture behind both fronts of a stretch, up to a time.
 
-        Its marks are all positions where the motion of a front may change suddenly: changes of the
-        pre-stress, points where a slow front became fast again (restarts) or where two fronts met
-        (joins), and the ends of both fronts.
+        Its marks are all positions where the motion of a front may change suddenly: the nucleation
+        point of most scenes, x = 0, changes of the pre-stress, points where a slow front became
+        fast again (restarts) or where two fronts met (joins), and the ends of both fronts.
         """
         curve, law = stretch.curve(), self.law
         changes_of_prestress = [*law.marks, *law.narrow_features]

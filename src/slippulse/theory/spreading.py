@@ -180,6 +180,7 @@ def _cut_overrunning_fronts(stretches: list[Stretch]) -> list[tuple[Point, str]]
         for arriving, side, neighbour in ((right, LEFT, left), (left, RIGHT, right)):
             # The front of the neighbour runs to the opposite side.
             x = neighbour.ends[-side].x
+            # A stretch without panels is a single point, which has not run anywhere.
             if arriving.panels and side * arriving.ends[side].x > side * x:
                 arriving.cut(side, x)
                 arriving.end_reason[side] = "met"

@@ -186,13 +186,15 @@ class StickSearch:
         # The search is for the time at which du/dt falls to this value.
         target = np.zeros(rows.size)
         # At the start of a step that begins at the release, du/dt is 0, but the block does not
-        # stick there. Such a step is shortened, and its target is QUIET_VELOCITY.
+        # stick there. Such a step is shortened to the part in which du/dt falls to its rounding
+        # error, QUIET_VELOCITY, and this is its target.
         quiet = np.flatnonzero(at_start <= 0.0)
         shortened = self._shorten_steps(x[quiet], start[quiet], end[quiet])
         target[quiet] = QUIET_VELOCITY
         start[quiet], end[quiet] = shortened.time.T
         at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
-        # In steps without a positive velocity the end of the shortened step is returned.
+        # If du/dt never rises above 0, the shortened step ends next to the start of the step. This
+        # end is then returned.
         zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:

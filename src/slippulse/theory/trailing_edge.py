@@ -436,7 +436,7 @@ class PartWithEdge(Part):
         for _ in range(MAX_NEWTON_STEPS):
             if not missing.size:
                 break
-            # Both are 0 before the first step.
+            # Both are 0 before the first step, which has no secant.
             velocity_before, step_before = velocity[missing], step[missing]
             velocity[missing] = self.velocity(x[missing], time[missing])
             # In the next steps the acceleration is replaced by the secant, the change of velocity
@@ -449,8 +449,8 @@ class PartWithEdge(Part):
             time[missing] -= step[missing]
             # A time that is far from the interpolated one may belong to another zero of du/dt.
             is_near = np.abs(time[missing] - guess[missing]) <= MAX_CORRECTION * length[missing]
-            # The search also ends if the next step will be tiny. It is about the product of the
-            # last two steps.
+            # The search also ends if the next step will be tiny. Its size is about the product of
+            # the last two steps. After the first step, the size of this step is used instead.
             step_size = np.abs(step[missing])
             next_size = step_size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
             is_tiny = step_size < NEWTON_TOLERANCE
