@@ -438,8 +438,8 @@ class SlowFront:
                 continue
             event = _first_event(x, mark, end_was_moved=move_count > 0)
             if event.name != "none" and not _ends_at_event(event, move_count):
-                # Beyond an event the solution may be meaningless. So the chunk is solved again with
-                # its end at the event.
+                # The event is inside of the chunk. Beyond an event the solution may be meaningless.
+                # So the chunk is solved again with its end at the event.
                 chunk = chunk._replace(stop=float(chunk.parameters(np.array(event.s))))
                 move_count += 1
             elif np.any(np.diff(x, prepend=self.x0) <= 0.0):

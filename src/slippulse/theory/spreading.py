@@ -304,7 +304,8 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
         return None
     x = root_between(delay_of_left, low, high, xtol=1e-14)
     # Like a slow front that becomes fast again, a slow front that meets another one is a restart of
-    # the curve. It takes longer for the last distance than a wave, whose speed is 1.
+    # the curve, here in the lists of both sides. A slow front takes longer for the last distance
+    # than a wave, whose speed is 1.
     left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
     right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
     durations = np.abs(np.diff([left_times, right_times]))
