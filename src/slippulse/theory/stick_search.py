@@ -223,10 +223,9 @@ class StickSearch:
         duration = end - start
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
         # The columns go back in time: column 0 is the end of the step, and column -1 is next to its
-        # start. So this is the column of the latest sample above QUIET_VELOCITY, and the column
-        # before has the sample that follows it in time. If no sample is above, these are the
-        # columns 0 and -1.
-        last_above = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        columns = np.stack([last_above, last_above - 1], axis=1)
+        # start. The shorter step starts at the latest sample above QUIET_VELOCITY; this is column 0
+        # if no sample is above. It ends at the sample after that, in the column before.
+        start_column = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
+        columns = np.stack([start_column, start_column - 1], axis=1)
         rows = np.arange(x.size)[:, None]
         return VelocitySamples(x, fine.time[rows, columns], fine.velocity[rows, columns])

@@ -522,8 +522,8 @@ class PartWithEdge(Part):
         has_stuck = knots.kind != SLIDING
         if not has_stuck.any():
             return None
-        # The stick time of a knot may be later than computed, by its error. Of the knots that stick
-        # first, apart from errors and rounding, the one nearest to x = 0 is chosen.
+        # The stick time of a knot may be later than computed, by its error. So several knots may
+        # stick first. The one nearest to x = 0 is chosen, so that rounding does not decide.
         error = self._stick_time_errors()
         latest_stick = np.where(has_stuck, knots.stick + error, np.inf)
         may_be_first = np.flatnonzero(latest_stick <= np.min(latest_stick) + 1e-10)

@@ -152,7 +152,8 @@ def _log_m_plus_at_iy(
     log_values, the result of `log_factor`, are the values of this logarithm at the nodes.
     excess_speed is v - 1.
     """
-    # Without damping the caller does not use the result. The division must only not fail.
+    # Without damping, y is infinite. The caller does not use the result then, and the smallest
+    # divisor only avoids an error.
     y = 1.0 / np.maximum(damping_ratio * (1.0 + excess_speed), 1e-300)
     z_minus_iy = contour.z - 1j * y[:, None]
     log_at_iy = np.sum(log_values * (contour.weight / z_minus_iy), axis=1).imag / np.pi
