@@ -374,7 +374,7 @@ class Curve:
         distance_to_end = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         unsolved = np.flatnonzero(distance_to_end > 1e-15 * np.abs(level))
         # A smallest slope limits the steps.
-        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(rise) + 1e-300)
+        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(rise))
         s[unsolved] = _solve_by_newton(
             self.coefficients(numbers[unsolved]),
             s=s[unsolved],

@@ -452,8 +452,8 @@ class DependenceDomains:
         the one from the left end of the curve to the right end of the domain, minus the one to the
         left end of the domain.
         """
-        # Where an integrand contains xi - g or eta - h, it has the factor k = 0. So any values of
-        # these two fields will do.
+        # Where an integrand contains xi - g, eta - h or a derivative of K, it has the factor k = 0.
+        # So any values of them will do.
         unused, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
         nodes = PanelNodes(unused, unused, kernel=lambda order: 1.0, panels=all_panels)
         values = np.broadcast_to(integrand(nodes), (1, self.curve.x.size))

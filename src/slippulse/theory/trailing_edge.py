@@ -252,6 +252,7 @@ class PartWithEdge(Part):
             slope_on_wave = 2.0 * by_eta if side > 0.0 else -2.0 * by_xi
             x = x - domains.slip_velocity() / slope_on_wave
             x = x.clip(left, right)
+        # The wave meets the edge between the two positions.
         offset = LANDING_OFFSET * self.scale
         return np.clip([x - offset, x + offset], left, right).ravel()
 
