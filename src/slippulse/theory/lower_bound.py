@@ -86,8 +86,8 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.in
     # Pairs that move so slowly that their bound is never positive.
     is_faint = velocity.max(axis=0) < FAINT_VELOCITY
     while x.size:
-        # The bound is never positive either if a position is just released, so that du/dt = 0
-        # there. Such intervals, and faint ones, are not cut down to the smallest length.
+        # At a position that is just being released du/dt is 0. The bound next to it need not become
+        # positive, however short the interval. So this interval is not cut into the smallest parts.
         both_move = velocity.min(axis=0) > ROUNDING_ERROR
         min_length = np.where(both_move, MIN_INTERVAL, MIN_INTERVAL_AT_REST)
         min_length[is_faint] = MIN_FAINT_INTERVAL

@@ -305,6 +305,7 @@ class PartWithEdge(Part):
         if not x.size:
             return knots, x
         new_knots = self._make_knots(x, self._exact_stick_time(x, knots))
+        # The new knots in the middles follow those at the starts of pieces.
         middle_knots = new_knots.select(np.s_[inner_piece_starts.size :])
         refined = knots.joined(new_knots)
         # The kinds of some knots are changed in place.
