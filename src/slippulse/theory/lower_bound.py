@@ -122,7 +122,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     """
     a, b = x
     # The points of the curve where the past of a begins, and where the past of b ends.
-    ends = part.curve.crossings(0.5 * (a + b), time - a, time + b)
+    ends = part.curve.crossings(y=0.5 * (a + b), xi=time - a, eta=time + b)
     bound = _lower_bound(part, x=x, velocity=velocity, time=time, ends=ends)
     return (bound > 0.0) | _has_positive_integrand(part, x=x, time=time, ends=ends)
 

@@ -206,7 +206,7 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
         stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
             # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
-            panels, _ = fast_front.panels_to_right(Point(left, 0.0), right, np.inf)
+            panels, _ = fast_front.panels_to_right(Point(left, 0.0), stop=right, until=np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         stretches.append(stretch)
     return stretches

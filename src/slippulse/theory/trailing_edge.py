@@ -588,9 +588,9 @@ class PartWithEdge(Part):
             # If a front is in this interval at the time, only its released part is examined.
             left, right = knots.x[k : k + 2].tolist()
             if not is_released[k]:
-                left = curve.front_at(first.time, right, -1.0)
+                left = curve.front_at(first.time, right, side=-1.0)
             if not is_released[k + 1]:
-                right = curve.front_at(first.time, left, 1.0)
+                right = curve.front_at(first.time, left, side=1.0)
             # If the first stick lies in this interval, both sides of it are examined.
             inner = [first.x] if left < first.x < right else []
             left_ends += [left, *inner]
