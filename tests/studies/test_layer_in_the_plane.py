@@ -302,6 +302,22 @@ def test_a_split_on_a_coarse_grid_alone_makes_a_pulse_undecided(evidence):
     assert counts == {"held": 5, "failed": 0, "undecided": 2}
 
 
+@pytest.mark.parametrize("splits_on_coarse", [False, True])
+def test_the_text_says_whether_wide_pulses_split_on_the_finest_grid_only(
+    evidence, splits_on_coarse
+):
+    table = evidence.tables["layer"]
+    splits = (table["part"] == "far") & (table["gamma"] < 0.6)
+    if not splits_on_coarse:
+        splits &= table["cells"] == table["cells"][splits].max()
+    evidence.tables["layer"] = table.assign(
+        split_position=table["split_position"].mask(splits, 30.0)
+    )
+    values = layer_claims.layer_regimes(evidence, "layer_regimes").template_values
+    assert values["wide_split_low"] > 0.0
+    assert values["wide_only_on_finest"] == (not splits_on_coarse)
+
+
 def test_pulses_fail_under_pressure_and_with_a_free_top(evidence):
     pressure = layer_claims.layer_pressure(evidence, "layer_pressure")
     assert pressure.counts() == {"held": 2, "failed": 2, "undecided": 2}
