@@ -65,7 +65,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     drawing.
     """
     panels = []
-    for boundary in ROW_DISTANCES:
+    for boundary in ("displacement", "stress"):
         run = point(data[f"burridge_knopoff_{boundary}"], 0)
         rows = block_states(run)
         rows["scale"] = displacement_scale(rows)

@@ -137,7 +137,8 @@ def draw_field(
     """Draw a field at the end, and as dashed lines its largest values in exact steady pulses.
 
     field : "slip_velocity" or "slip"
-    steady_pulses : the rows of `steady_rows` for this field
+    steady_pulses : the rows of `steady_rows` for this field; a dashed line runs from x = 0 to the
+        position of a row, which is the end of the panel on the side of the pulse
     """
     rows = rows_by_role["profile"][rows_by_role["profile"]["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)

@@ -80,6 +80,7 @@ def _add_edge_legend(axes: Axes, dx: float) -> None:
         "o": rf"front, lattice, $\Delta x = {dx:g}$",
         "s": "trailing edge, lattice",
     }
+    # Curves without points only give entries of the legend.
     for line_style, label in label_of_style.items():
         axes.plot([], [], line_style, color=GREY, label=label, **OPEN_MARKER)
     axes.legend(loc="upper left", fontsize=SMALL_TEXT)

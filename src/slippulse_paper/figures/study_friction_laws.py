@@ -35,6 +35,7 @@ def draw(table: pd.DataFrame) -> Figure:
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title)
+    # Friction weakens with slip velocity on the left of this line, and strengthens on its right.
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     draw_speeds(speed_axes, rows_by_role["selection"])
     handles = style.legend_handles(planes)

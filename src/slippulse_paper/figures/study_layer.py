@@ -251,14 +251,14 @@ def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
     There is one colour for each friction coefficient (column coupling). The column side is 1 for
     pulses on the right, and -1 for those on the left, which have open markers.
     """
+    handles = []
     groups = coupled.groupby("coupling")
     for colour, (coupling, rows) in zip(COUPLING_COLOURS, groups, strict=False):
         right, left = rows[rows["side"] > 0.0], rows[rows["side"] < 0.0]
         axes.plot(right["sample_position"], right["pulse_width"], "o-", color=colour)
         distance = left["sample_position"].abs()
         axes.plot(distance, left["pulse_width"], "o:", color=colour, **OPEN_MARKER)
-        axes.plot([], [], color=colour, label=rf"$\mu = {coupling:g}$")
-    handles, _ = axes.get_legend_handles_labels()
+        handles.append(entry(rf"$\mu = {coupling:g}$", color=colour))
     handles += [
         entry("right", color=GREY, marker="o"),
         entry("left", color=GREY, marker="o", **OPEN_MARKER),
