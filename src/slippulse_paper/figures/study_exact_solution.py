@@ -115,5 +115,6 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
     style.draw_first_order(axes, rows["dx"], slope=1.5, colour=GREY)
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))
+    # The legend stands below the lines.
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)
     axes.legend(loc="lower right", ncols=2)

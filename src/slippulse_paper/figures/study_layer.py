@@ -180,6 +180,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
         _draw_quantity(speed_axes, rows, "speed", unit=1.0, look=look)
         _draw_quantity(width_axes, rows, "pulse_width", unit=width_unit, look=look)
         _draw_quantity(slip_axes, rows, "pulse_slip", unit=slip_unit, look=look)
+    # Grey lines mark the speed of the longitudinal wave, and the width that is the unit.
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
@@ -214,6 +215,7 @@ def _draw_quantity(
     line = look | {"linewidth": 0.8, "capsize": 1.5, "label": label}
     axes.errorbar(energy, value, [value - least, largest - value], **line)
     axes.plot(energy, rows[f"damped_{quantity}"] / unit, ":", color=look["color"])
+    # The formula does not depend on the fracture energy.
     formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
     axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
 

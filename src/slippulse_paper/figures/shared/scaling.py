@@ -79,6 +79,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
     if (predicted.isna() | measured.isna()).all():
         axes.text(0.5, 0.5, f"no run reaches ${symbol}$", ha="center", transform=axes.transAxes)
         return
+    # Rims are wide if their colour has a meaning.
     edge_width = 1.0 if "edgecolors" in colours else 0.3
     _error_bars(axes, predicted, measured, runs[f"uncertainty_{quantity}"])
     _scatter(axes, runs, predicted, measured, colours, s=15.0, linewidths=edge_width)
