@@ -78,6 +78,7 @@ def draw(table: pd.DataFrame) -> Figure:
     held_stress = table[table["boundary"] == "stress"]
     for ensemble in ensembles(held_stress, held_stress[held_stress["part"] == "ensemble"]):
         dead_fraction = ensemble.row["deaths"] / ensemble.row["pulses"]
+        # If few pulses die, the survival stays close to 1, and is not drawn.
         if dead_fraction > MIN_DEAD_FRACTION:
             draw_survival(walk_axes, ensemble)
             # The survival that theory predicts is a dashed line.
