@@ -215,13 +215,17 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_prestress_strip(axes: Axes, blocks: pd.DataFrame) -> None:
-    """Draw the pre-stress of each block as a bar."""
+    """Draw the pre-stress of each block as a bar, with a tick at the level on the left."""
     prestress, left_level = blocks["prestress"], blocks["left"].iloc[0]
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.bar(blocks["x"], prestress, width=BLOCK_WIDTH, color=GREY)
     axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    lowest = min(0.0, prestress.min())
-    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted({0.0, 1.0, left_level}))
+    bottom, top = min(0.0, prestress.min()) - 0.15, 1.12
+    ticks = [0.0, 1.0]
+    # The level on the left has a tick if its number does not overlap that of 0 or 1.
+    if min(abs(left_level), abs(left_level - 1.0)) > 0.2 * (top - bottom):
+        ticks.append(left_level)
+    axes.set(ylim=(bottom, top), yticks=ticks)
     axes.tick_params(axis="x", length=0, labelbottom=False)
     axes.tick_params(axis="y", labelsize=7)
     axes.spines[["right", "top", "bottom"]].set_visible(False)

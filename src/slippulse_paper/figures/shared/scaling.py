@@ -106,6 +106,7 @@ def ratio_inset(
     line_column : there is one line, with its own colour, for each value of this column
     """
     inset = style.small_inset(axes, box, "measured / formula")
+    # The layout reserves no room for the inset, because it and its legend lie within the panel.
     inset.set_in_layout(False)
     draw_ratio(inset, runs, quantity, x_column, line_column)
     inset.set_xlabel(f"${SYMBOLS[x_column]}$", fontsize=SMALL_TEXT, labelpad=0.0)
