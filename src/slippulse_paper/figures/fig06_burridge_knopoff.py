@@ -5,6 +5,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from slippulse.data.point import point
@@ -204,14 +205,19 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_prestress_strip(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), loc="center")
         panel_letter(strip, letter)
+    legend_below(figure, legend_entries(), columns=4)
+    return figure
+
+
+def legend_entries() -> list[Line2D]:
+    """Return a legend entry for each state of a block, and for the block that stops the front."""
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
     handles = [
         entry(name, markerfacecolor=colour, **square) for name, colour in STATE_COLOURS.items()
     ]
     frame: Look = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
     handles.append(entry("never released: stops the left front", **(square | frame)))
-    legend_below(figure, handles, columns=4)
-    return figure
+    return handles
 
 
 def draw_prestress_strip(axes: Axes, blocks: pd.DataFrame) -> None:

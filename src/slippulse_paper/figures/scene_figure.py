@@ -139,8 +139,8 @@ def add_map_legend(axes: Axes) -> None:
     """
     lowest, highest = axes.get_ylim()
     runs_to_the_left = -lowest > 1.2 * highest
-    corner = "lower left" if runs_to_the_left else "upper left"
-    axes.legend(loc=corner, frameon=True, edgecolor="none")
+    look: Look = {"frameon": True, "edgecolor": "none"}
+    axes.legend(loc="lower left" if runs_to_the_left else "upper left", **look)
 
 
 def draw_field(

@@ -81,7 +81,7 @@ def draw_distributions(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
             error = (ratio - 1.0).dropna().abs()
             look: Look = {"color": colour, "label": f"{boundary_name}, {name}"}
             if error.empty:
-                # Only the entry in the legend is drawn.
+                # There is no run to draw, so only the legend gets an entry.
                 axes.plot([], [], line, **look)
             else:
                 axes.ecdf(error, linestyle=line, **look)

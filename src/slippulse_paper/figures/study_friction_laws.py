@@ -60,6 +60,7 @@ def draw_speeds(axes: Axes, runs: pd.DataFrame) -> None:
     for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=False):
         label = rf"lattice, $\Delta x = {dx:g}$"
         axes.plot([], [], marker, color=GREY, label=label, **OPEN_MARKER)
+    # This line is at the wave speed.
     axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
     axes.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
     style.few_ticks(axes.xaxis, (1, 2, 4, 8))
