@@ -14,14 +14,15 @@ from PIL import Image
 import slippulse as sp
 from slippulse.data.store import load_dataset
 from slippulse.data.tables import load_table, save_table
+from slippulse.plotting import space_time
 from slippulse.plotting.style import COLOUR_CYCLE
 from slippulse.prediction.comparison import measured_table
 from slippulse_paper.configuration.expand import expand
 from slippulse_paper.configuration.resolve import resolve, scene_simulation
 from slippulse_paper.configuration.runs import runs
 from slippulse_paper.configuration.schema import Model, NamedScene
+from slippulse_paper.figures import scene_animation, user_defined_sweep
 from slippulse_paper.figures import scene_figure as figure
-from slippulse_paper.figures import user_defined_sweep
 from slippulse_paper.figures.scene_animation import FRAME_COUNT, save_animation
 from slippulse_paper.steps import draw_scene, measure, predict, simulate, study_grid
 
@@ -77,7 +78,7 @@ IN_SI = {"layer": LAYER, "left": 21.6e6, "right": 21.6e6, "duration": 0.6, "dx":
 IN_SI |= {"bumps": [[900.0, -0.2e6, 100.0]]}
 
 
-def test_a_scene_with_a_layer_is_drawn_in_si_units(drawn, shipped, tmp_path):
+def test_a_scene_with_a_layer_is_drawn_in_si_units(drawn, shipped, tmp_path, monkeypatch):
     scene, layer = draw_one(shipped, tmp_path, "zone", IN_SI), sp.Layer(**LAYER)
     roles = dict([*scene.table.groupby("role")])
     units = roles["unit"].set_index("series")["unit"]
@@ -111,8 +112,11 @@ def test_a_scene_with_a_layer_is_drawn_in_si_units(drawn, shipped, tmp_path):
     for text in ("<td>600 ms</td>", "<td>21.6 MPa</td>", "bump of \N{MINUS SIGN}200 kPa and width"):
         assert text in page
     assert "The layer" not in drawn["barrier"].outputs["html"].read_text(encoding="utf-8")
+    # Three frames show that it can be drawn in these units, too.
+    monkeypatch.setattr(scene_animation, "FRAME_COUNT", 3)
     save_animation(scene.run, TITLE, tmp_path / "one.gif", layer)
-    assert (tmp_path / "one.gif").stat().st_size > 10_000
+    with Image.open(tmp_path / "one.gif") as film:
+        assert film.n_frames == 3
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -309,3 +313,22 @@ def test_a_scene_shows_its_parameters():
     for name, value in PLAIN.attributes().items():
         assert f"<th>{name}</th>" in html
         assert isinstance(value, str) or f"<td>{value}</td>" in html
+
+
+def test_blocks_that_no_rupture_reaches_are_drawn_at_rest():
+    """A barrier at x = 8 stops the two ruptures that begin at x = 0 and at x = 16."""
+    barrier, second_nucleation = (8.0, -3.0, 1.0), (16.0, 0.65, 1.0)
+    profile = sp.Prestress(0.4, 0.4, peak=1.1, bumps=(barrier, second_nucleation))
+    run = sp.simulate(sp.Scene("displacement", profile, 8.0, 0.1, gamma=0.65, beta=0.01))
+    for rows in space_time.edge_rows(run):
+        at_barrier = rows.loc[abs(rows["position"] - 8.0) < 0.4, "time"]
+        assert len(at_barrier) > 2 and at_barrier.isna().all()
+
+
+def test_the_drawn_pre_stress_ends_with_the_drawn_positions():
+    """The rupture stays on the right of x = 0."""
+    profile = sp.Prestress(0.4, 0.4, peak=0.4, bumps=((20.0, 0.65, 1.0),))
+    run = sp.simulate(sp.Scene("displacement", profile, 5.0, 0.1, gamma=0.65, beta=0.01))
+    positions = space_time.prestress_rows(run)["position"]
+    assert (positions.min(), positions.max()) == space_time.drawn_range(run)
+    assert positions.min() > 0.0

@@ -124,6 +124,21 @@ def test_the_spacing_follows_the_lengths_of_the_scene():
     assert sp.settings_for(1e-2, **deep)["dx"] < sp.settings_for(1e-2, **CRACK)["dx"]
 
 
+def test_the_spacing_follows_where_a_table_falls_to_zero():
+    spacing = lambda profile: sp.settings_for(1e-2, **CRACK | {"prestress": profile})["dx"]
+    # A table with the levels of the scene below its Gaussian is the same pre-stress.
+    levels = sp.Prestress.through([-9.0, 0.0, 0.0, 9.0], [-0.5, -0.5, 0.0, 0.0], width=1.0)
+    assert spacing(levels) == spacing(sp.Prestress(-0.5, 0.0))
+    # A straight line falls to 0 before the next point of the table.
+    coarse = sp.Prestress.through([-30.0, -1.0, 0.0, 1.0, 2.0], [-3.0, 0.2, 1.2, 0.2, 0.0])
+    x = np.linspace(-30.0, 2.0, 321)
+    assert spacing(coarse) == pytest.approx(
+        spacing(sp.Prestress.through(x, coarse(x))), rel=tol.SHOWN_DIGITS
+    )
+    box = sp.Prestress.through([-9.0, -1.0, -1.0, 0.5, 0.5, 9.0], [-0.5, -0.5, 1.2, 1.2, 0.0, 0.0])
+    assert spacing(box) > 1e-3
+
+
 def test_without_an_accuracy_no_spacing_changes(config):
     preset, accuracy = config["presets"][config["preset"]], accuracy_for(config)
     assert accuracy == accuracy_for(config, accuracy=None) == preset | {"whole": True}

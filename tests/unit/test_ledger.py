@@ -401,8 +401,8 @@ def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_ze
     runs["pulse_half_width"] = [1.0, 1.5, 3.0, 2.0]
     same = {"left": -0.5, "right": 0.0, "dx": 0.1, "damping_ratio": 0.1, "release": "total"}
     signs = growth_signs(runs.assign(**same, friction="coulomb", regime="pulse, one-way, steady"))
-    assert [*signs["changed"]] == [0.0, 1.0, 0.0, 0.0]
-    assert [*signs["widened"]] == [0.0, 1.0, 0.0, -1.0]
+    assert [*signs["velocity_growth"]] == [0.0, 1.0, 0.0, 0.0]
+    assert [*signs["width_growth"]] == [0.0, 1.0, 0.0, -1.0]
 
 
 def test_a_sweep_may_have_several_release_rules():
@@ -547,6 +547,8 @@ def test_what_follows_is_not_counted_again_and_findings_are_asked_for_by_name():
     further = {"apart, 0: arrested": 3.0, "apart, 0: growing": 2.0, "apart": 4.0, "else": 1.0}
     ledger = Ledger([CLAIM | {"further": further}], numbers)
     assert ledger.listed("one", "apart") == "3 *arrested*; 2 *growing*"
+    assert ledger.listed("one", "apart,\n0") == "3 *arrested*; 2 *growing*"
+    assert ledger.listed("one", "else") == "none"
     assert ledger.found("ours").gap == 0.5 and ledger.found("no") is None
     with pytest.raises(ValueError, match="finding: 'none'; allowed: ours, no"):
         ledger.found("none")

@@ -20,6 +20,11 @@ def test_energy_is_conserved_to_rounding(boundary, top):
     assert simulate_layer(scene).energy_residual < 1e-12
 
 
+def test_a_layer_in_which_nothing_moves_has_no_energy_error():
+    run = simulate_layer(replace(PULSE, prestress=Prestress(0.0, 0.0, peak=0.0), duration=1.0))
+    assert run.energy_residual == 0.0 and np.all(run.velocity == 0.0)
+
+
 def test_energy_is_conserved_with_friction_that_recovers_as_slip_slows_down():
     run = simulate_layer(replace(PULSE, rate=0.05, weakening=0.1, cells=10))
     assert run.energy_residual < 1e-12 and np.nanmax(run.slip) > 0.5
@@ -95,6 +100,14 @@ def test_a_strip_that_slides_as_one_sticks_after_two_shear_travel_times():
     middle = np.argmin(np.abs(run.x))
     assert run.stick_time[middle] == pytest.approx(2.0 / np.sqrt(GAMMA / 2.0), rel=0.008)
     assert run.slip[middle] == pytest.approx(2.0 * 0.8 / GAMMA, rel=0.01)
+
+
+def test_a_node_without_friction_and_load_does_not_stick_before_it_moves():
+    """At x > 0.5 in the nucleus, nothing drives slip until the first wave arrives."""
+    profile = Prestress.through(np.array([-1.5, -1.4, 0.4, 0.5]), np.array([-0.3, 0.9, 0.9, 0.0]))
+    run = simulate_layer(LayerScene("stress", 0.5, profile, 0.5, 4.0, cells=10))
+    has_stuck = np.isfinite(run.stick_time)
+    assert np.any(has_stuck) and np.all(run.stick_time[has_stuck] > run.release_time[has_stuck])
 
 
 def test_half_a_layer_and_a_full_one_agree():

@@ -100,6 +100,6 @@ rule study_grid:
         },
         code=lambda wildcards: code_of("study_grid", solver_of(wildcards)),
     message:
-        "Grid study of {wildcards.simulation}: on coarser lattices, for its uncertainty"
+        "Grid study of {wildcards.simulation} on coarser lattices, for the uncertainties"
     run:
         run_step("study_grid", wildcards, input, output, params, threads, log)

@@ -14,7 +14,7 @@ from ..model.checks import check_that
 
 SAMPLE_AXES = ("sample_time", "sample_position")
 # Dimensions of the samples of a run. All other arrays of a run have the dimension "x".
-DIMENSIONS = {name: (name,) for name in SAMPLE_AXES} | {
+SAMPLE_DIMENSIONS = {name: (name,) for name in SAMPLE_AXES} | {
     "sample_slip": SAMPLE_AXES,
     "sample_velocity": SAMPLE_AXES,
 }
@@ -32,7 +32,9 @@ class Recorded(dict[str, np.ndarray]):
 
     def dataset(self) -> xr.Dataset:
         """Return the run as a Dataset: fields as functions of x, samples of time and position."""
-        variables = {name: (DIMENSIONS.get(name, "x"), values) for name, values in self.items()}
+        variables = {
+            name: (SAMPLE_DIMENSIONS.get(name, "x"), values) for name, values in self.items()
+        }
         return xr.Dataset(variables, attrs=self.attrs)
 
 
@@ -54,7 +56,7 @@ def runs_in(sweep: xr.Dataset) -> Iterator[Recorded]:
     block_arrays = _arrays_along(sweep, "block")
     # The times, positions and values of samples, in arrays whose first axis is the run.
     sample_arrays = {
-        str(name): sweep.variables[name].values for name in DIMENSIONS if name in sweep
+        str(name): sweep.variables[name].values for name in SAMPLE_DIMENSIONS if name in sweep
     }
     number_of_blocks = block_arrays["x"].size if "x" in block_arrays else 0
     starts = _starts_of_runs(sizes, recorded_starts, number_of_blocks)

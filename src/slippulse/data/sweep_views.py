@@ -83,6 +83,7 @@ def is_sweep(data: object) -> bool:
     """Return True if a Dataset contains runs along the dimension ``point``."""
     if not isinstance(data, xr.Dataset) or "point" not in data.dims:
         return False
+    # Every run has these parameters, and other Datasets are unlikely to have them all.
     return all(name in data.variables for name in ("boundary", "dx", "duration"))
 
 

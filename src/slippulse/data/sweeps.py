@@ -11,7 +11,7 @@ from importlib.metadata import version
 import numpy as np
 import xarray as xr
 
-from .points import DIMENSIONS, Recorded, runs_in
+from .points import SAMPLE_DIMENSIONS, Recorded, runs_in
 
 PACKAGES = ("slippulse", "numpy", "numba", "scipy", "xarray", "h5netcdf")
 # Variables that the groups "fronts" and "fields" of a recorded sweep have.
@@ -84,9 +84,12 @@ def _block_variables(runs: Sequence[Recorded], fields: Sequence[str]) -> dict[st
 
 
 def _sample_variables(runs: Sequence[Recorded]) -> dict[str, tuple]:
-    """Return the samples of all runs, along "point" and the dimensions "time" and "position"."""
+    """Return the samples of all runs, along "point" and the dimensions "time" and "position".
+
+    In a single run, the names of these two dimensions begin with "sample_".
+    """
     variables: dict[str, tuple] = {}
-    for name, dimensions in DIMENSIONS.items():
+    for name, dimensions in SAMPLE_DIMENSIONS.items():
         axes = [dimension.removeprefix("sample_") for dimension in dimensions]
         values = np.stack([run[name] for run in runs])
         variables[name] = (("point", *axes), values)

@@ -102,6 +102,7 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     space_time.draw_profile(prestress_axes, rows_by_role)
     if "map" in rows_by_role:
         space_time.draw_map(map_axes, rows_by_role)
+        # An exact solution that is not known everywhere gives the reason.
         if run.attrs.get("limit_reason"):
             _hatch_unknown(map_axes, run, rows_by_role)
             figure.suptitle(f"hatched: not known, because {run.attrs['limit_reason']}")

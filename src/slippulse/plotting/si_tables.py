@@ -41,7 +41,9 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
         {"role": "strength", "series": name, "value": value} for name, value in STRENGTHS.items()
     ]
     table = pd.concat([table, pd.DataFrame(strengths)], ignore_index=True)
-    table = table if "unit" in table else table.assign(unit="")
+    # Rows that are in SI units already, such as the numbers below a figure, keep their unit.
+    if "unit" not in table:
+        table["unit"] = ""
     axis_units = _convert_coordinates(table, layer)
     # The physical quantity, such as "stress", of the number in the column `value` of each row. It
     # follows from the role or, for other roles, from the column `series`. It is NaN for a

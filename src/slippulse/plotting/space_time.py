@@ -75,7 +75,10 @@ def run_title(rows_by_role: dict[str, pd.DataFrame]) -> str:
 
 
 def _title_in_si(parameters: pd.DataFrame) -> str:
-    """Return a title with the condition on top, thickness, elasticity, damping and spacing."""
+    """Return a title with the condition on top, thickness, elasticity, damping and spacing.
+
+    parameters : one row for each parameter, with its name (series), value and unit (or NaN)
+    """
     rows = parameters.fillna({"unit": ""}).set_index("series")
     text = {name: f"{row['value']:.4g} {row['unit']}".strip() for name, row in rows.iterrows()}
     condition_on_top = "stress held on top"
@@ -114,7 +117,7 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     if sample_count < 2:
         return float(lowest - margin), float(highest + margin)
     first_sample, last_sample = run["sample_position"].values[[0, -1]]
-    # The margin is at least three intervals between samples wide.
+    # The margin is at least three intervals between samples wide, so that it contains samples.
     margin = max(margin, 3.0 * (last_sample - first_sample) / (sample_count - 1))
     lower = lowest - margin if first_sample < lowest else first_sample
     upper = highest + margin if last_sample > highest else last_sample
@@ -159,7 +162,10 @@ def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
     # The blocks of a run end near its fronts. The pre-stress is computed from its profile, which is
     # known everywhere.
     lower, upper = drawn_range(run)
-    x = np.union1d(np.linspace(lower, upper, FRONT_POINTS), 0.0)
+    x = np.linspace(lower, upper, FRONT_POINTS)
+    # The nucleation at x = 0 may be narrower than the distance between these points.
+    if lower < 0.0 < upper:
+        x = np.union1d(x, 0.0)
     profile = prestress_from(run.attrs)
     if profile.points:
         # The pre-stress is piecewise linear, so up to TABLE_POINTS of its corners are drawn. It may
@@ -176,12 +182,14 @@ def prestress_rows(run: xr.Dataset) -> pd.DataFrame:
 def edge_rows(run: xr.Dataset) -> list[pd.DataFrame]:
     """Return when blocks were first released (role front) and when they last stuck (role trailing).
 
-    The stick time is NaN for blocks that did not stick.
+    The stick time is NaN for blocks that did not stick, and both times are NaN for blocks between
+    two ruptures that were not released.
     """
-    released = np.flatnonzero(np.isfinite(run["release_time"].values))
-    spaced = released[spaced_indices(released.size, FRONT_POINTS)]
+    blocks = released = np.flatnonzero(np.isfinite(run["release_time"].values))
+    if released.size:
+        blocks = np.arange(released[0], released[-1] + 1)
     # The last block is kept as well, so that the front is drawn to its end.
-    kept = np.union1d(spaced, released[-1:])
+    kept = np.union1d(blocks[spaced_indices(blocks.size, FRONT_POINTS)], blocks[-1:])
     x = run["x"].values[kept]
     release, stick = run["release_time"].values[kept], run["stick_time"].values[kept]
     return [
@@ -271,8 +279,9 @@ def draw_edges(axes: Axes, rows_by_role: dict[str, pd.DataFrame], end: float) ->
     if front.empty:
         return
     positions = rows_by_role["prestress"]["position"]
-    # Beyond the front, blocks are at rest until the end.
+    # Beyond the front, and between two ruptures (NaN), blocks are at rest until the end.
     release = np.interp(positions, front["position"], front["time"], left=end, right=end)
+    release = np.nan_to_num(release, nan=end)
     axes.fill_betweenx(positions, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(front["time"], front["position"], color=BLACK, linewidth=0.8, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()

@@ -180,7 +180,10 @@ def new_panels(
 
 
 def small_inset(axes: Axes, box: Box, title: str) -> Axes:
-    """Add an inset with small text to a panel, and return its axes."""
+    """Add an inset with small text to a panel, and return its axes.
+
+    box : left, bottom, width and height of the inset, as fractions of the panel
+    """
     inset = axes.inset_axes(box)
     inset.tick_params(labelsize=SMALL_TEXT, length=1.5, pad=1.5)
     inset.set_title(title, loc="center", fontsize=SMALL_TEXT, pad=2.5)
@@ -249,6 +252,7 @@ def draw_first_order(axes: Axes, spacings: pd.Series, slope: float, colour: str)
 def draw_regimes(axes: Axes, runs: pd.DataFrame, x: str, **look: Any) -> None:
     """Mark the regime of each run by colour and marker, with its pre-stress on the vertical axis.
 
+    runs : table with the columns regime and level (the pre-stress), and the column ``x``
     x : the column on the horizontal axis
     look : further arguments of `Axes.plot`; a colour or a label replaces that of the regime
     """

@@ -63,6 +63,10 @@ VELOCITY_ERROR, VELOCITY_ERROR_DAMPED = 0.6, 0.6
 
 # Number of levels that represent a table of pre-stress.
 TABLE_LEVELS = 9
+# A table may jump at a point. It is evaluated this fraction of its length before and after it.
+JUMP_WIDTH = 1e-9
+# Positions, in units of its width, at which a Gaussian on a table is evaluated.
+POSITIONS_IN_WIDTHS = np.linspace(-8.0, 8.0, 1601)
 # Fronts in lower pre-stress than this are not covered (see `slippulse.measurement.promise`).
 LOWEST_PRESTRESS = 0.05
 
@@ -143,6 +147,7 @@ def settings_for(
     peak_width = prestress.narrowest
     if prestress.points:
         peak_width = min(peak_width, _nucleation_width(prestress))
+    # The step and the scatter of a grid study need the rest of the error.
     demand = Demand(
         error=SPACING_FRACTION * float(accuracy),
         levels=_levels(prestress),
@@ -209,6 +214,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
     pulse. The other is that the error of a measured quantity is at most the error of the demand.
     Each error is a constant times a power of dx, and is solved for dx.
     """
+    # The pre-stress varies over the first of these lengths, and leaf springs act over the second.
     nucleation_length = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
     # The nucleation causes this part of the errors of T_trans and L_trans. It is divided by dx.
     nucleation_error_per_dx = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
@@ -254,17 +260,44 @@ def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: fl
 def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]:
     """Return the distances from the nucleation at which the pre-stress falls to 0, if it does.
 
+    For a table, only the shortest distance is returned.
+
     levels : levels of the pre-stress, towards which its Gaussian falls
     """
     if prestress.points:
-        x, tau = prestress.point_arrays
-        nucleation = 0.0 if prestress.width is not None else x[np.argmax(tau)]
-        distances = np.abs(x[tau < 0.0] - nucleation)
+        distances = _distances_to_zeros_of_table(prestress)
         return [float(np.min(distances))] if distances.size else []
     width, peak = prestress.width or math.inf, prestress.peak
     # Where level + (peak - level) exp(-x^2 / 2 width^2) is 0.
     negative_levels = [level for level in levels if level < 0.0 < peak]
     return [width * math.sqrt(2.0 * math.log1p(-peak / level)) for level in negative_levels]
+
+
+def _distances_to_zeros_of_table(prestress: Prestress) -> np.ndarray:
+    """Return the distances from the nucleation in a table at which the pre-stress changes its sign.
+
+    The nucleation is the Gaussian at x = 0 or, without a Gaussian, the middle of the highest part
+    of the table.
+    """
+    points, values = prestress.point_arrays
+    first = last = int(np.argmax(values))
+    while last + 1 < points.size and values[last + 1] == values[first]:
+        last += 1
+    nucleation = 0.5 * (points[first] + points[last])
+    # The values just before and just after each point, at which the table may jump.
+    offset = JUMP_WIDTH * (points[-1] - points[0])
+    positions = [points - offset, points + offset]
+    if prestress.width is not None:
+        nucleation = 0.0
+        positions.append(prestress.width * POSITIONS_IN_WIDTHS)
+    x = np.unique(np.concatenate(positions))
+    tau = prestress(x)
+    # The pre-stress is nearly linear between a position and the next one.
+    before = np.flatnonzero(np.diff(tau < 0.0))
+    zeros = x[before] + np.diff(x)[before] * tau[before] / (tau[before] - tau[before + 1])
+    distances = np.abs(zeros - nucleation)
+    # A jump to negative pre-stress at the nucleation itself has no length that could be resolved.
+    return distances[distances > 2.0 * offset]
 
 
 def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[float]:
@@ -281,10 +314,12 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
     # The error of the speed of a front that runs into positive pre-stress.
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
-    stops_on_left = prestress.left < 0.0 and prestress.right == 0.0
-    if stops_on_left and distances:
+    # T_trans and slip velocity tend to a limit only if the left front stops in negative pre-stress
+    # and the pulse runs into pre-stress 0.
+    if prestress.left < 0.0 and prestress.right == 0.0 and distances:
         # The errors of T_trans and of slip velocity are these constants times dx/distance. The
-        # first distance is the one on the left or, in a table, the shortest one.
+        # first distance is the one on the left or, in a table, the shortest one. In a pre-stress
+        # with steps, T_trans is not measured.
         if not prestress.steps:
             transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / transition_error)

@@ -103,6 +103,7 @@ def _numbers(rupture: Rupture | None, fields: dict[str, np.ndarray], end: float)
     fields : the fields at the time ``end``, see `_fields_at_end`
     """
     first_stick = rupture.first_stick if rupture else None
+    # The earliest point (x, time) from which on the solution is not known, with the reason.
     limit = rupture.limit if rupture else None
     # A point may be sliding if its slip velocity is not known (NaN).
     may_slide = not np.all(fields["slip_velocity"] <= 0.0)

@@ -103,7 +103,8 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
 
     This is possible if the front is held back by negative pre-stress, and if the damping is weak.
     In the continuum limit another position sticks first, at a later time. Under a stress boundary,
-    only a rupture between two negative levels sticks at all.
+    only a rupture between two negative levels sticks at all. A first stick that was undone has a
+    flag of its own.
     """
     numbers, profile = solution.numbers, scene.prestress
     time, position = numbers["first_stick_time"], numbers["first_stick_position"]
@@ -125,9 +126,9 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
 def front_restarted(scene: Scene, solution: Solution) -> bool:
     """Return True if waves of a few blocks may have set a front in motion again.
 
-    This is possible if the damping is weak. Only tables of pre-stress are examined. For constant
-    levels under a stress boundary, `slippulse.measure` returns the transition state "stalled" if
-    the lattice held up the front.
+    This is possible if the damping is weak, and such a front has stood still for long. Only tables
+    of pre-stress are examined. For constant levels under a stress boundary, `slippulse.measure`
+    returns the transition state "stalled" if the lattice held up the front.
     """
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
         return False
@@ -144,7 +145,8 @@ def front_restarted(scene: Scene, solution: Solution) -> bool:
 def nothing_sticks(scene: Scene, solution: Solution) -> bool:
     """Return True if no block stuck in the last 2 pi/sqrt(gamma), the period of the leaf springs.
 
-    Scenes without leaf springs, and those with the friction law of the paper, are not flagged.
+    Under another law than that of the paper, leaf springs may never stop the blocks, so that the
+    rupture stays a crack. Other scenes are not flagged.
     """
     if scene.friction == COULOMB or scene.gamma == 0.0:
         return False
@@ -159,9 +161,9 @@ def nothing_sticks(scene: Scene, solution: Solution) -> bool:
 def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
     """Return the number of blocks across the narrowest pulse at the end.
 
-    Under a stress boundary, return the number of blocks across the nucleation, at least 1. The
-    number is 0 if there is no pulse, or if the exact solution does not know the whole state at the
-    end.
+    Under a stress boundary, return the number of blocks across the nucleation, at least 1: without
+    leaf springs, nothing else sets a length. Otherwise the number is 0 if there is no pulse, or if
+    the exact solution does not know the whole state at the end (its slip velocity is then NaN).
     """
     if scene.boundary == "stress":
         return max(int(_nucleation_width(scene, solution) / scene.dx), 1)

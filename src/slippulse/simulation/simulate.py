@@ -98,13 +98,11 @@ def _flag_details(scene: Scene, numbers: dict) -> str:
     if scene.scheme == "continuum":
         return f" ({numbers['limit_reason']})" if numbers["limit_reason"] else ""
     return (
-        f" (lowest stress of a stuck block {numbers['min_stuck_stress']:.4g}, where"
-        f" {scene.reverse_threshold:.4g} makes it slide backwards; {numbers['pulse_blocks']} "
-        f"blocks in"
-        f" the narrowest pulse, where {scene.resolved_blocks} are needed; smallest slip velocity"
-        f" {numbers['min_velocity']:.3g}; relative energy error {numbers['energy_residual']:.2g}, "
-        f"where"
-        f" {MAX_ENERGY_RESIDUAL:g} is allowed)"
+        f" (lowest stress of a block at rest: {numbers['min_stuck_stress']:.4g}, needed: above"
+        f" {scene.reverse_threshold:.4g}; blocks in the narrowest pulse:"
+        f" {numbers['pulse_blocks']}, needed: {scene.resolved_blocks}; smallest slip velocity:"
+        f" {numbers['min_velocity']:.3g}; relative energy error:"
+        f" {numbers['energy_residual']:.2g}, allowed: {MAX_ENERGY_RESIDUAL:g})"
     )
 
 

@@ -218,7 +218,11 @@ def make_segments(size: int) -> Segments:
 
 
 def make_scratch(size: int, order: int) -> Scratch:
-    """Return scratch arrays without events, for ``size`` blocks and steps of an order."""
+    """Return scratch arrays without events, for ``size`` blocks and steps of an order.
+
+    Slip has the time derivatives 0 to order + 1. A released block needs two more for a moment.
+    """
+    # Two events can be predicted for each block: a stick and a kink of the law of friction.
     prediction = EventPrediction(
         release_time=np.full(size, np.inf),
         event_block=np.zeros(2 * size, dtype=np.int64),

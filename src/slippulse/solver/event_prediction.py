@@ -107,6 +107,7 @@ def find_threshold_crossing(coefficients, slopes, degree, lower, upper):
         time = lower + (upper - lower) * k / STRESS_EVALUATIONS
         if evaluate_polynomial(coefficients, degree, time) > ROUNDING_TOLERANCE:
             return find_crossing(coefficients, degree, lower, time)
+    # Between these times the polynomial may still reach 0 for a moment, at its highest point.
     turn = find_turning_point(coefficients, slopes, degree, lower, upper)
     if turn < upper and evaluate_polynomial(coefficients, degree, turn) >= 0.0:
         return find_crossing(coefficients, degree, lower, turn)
@@ -236,7 +237,10 @@ def has_simultaneous_event(segments, prediction, medium, block, latest):
 
 @kernel_function()
 def list_due_releases(segments, prediction, latest, due):
-    """Write the blocks that are released until ``latest`` into ``due``, and return their number."""
+    """Write the blocks that are released until ``latest`` into ``due``, and return their number.
+
+    If there are more of them than ``due`` can hold, the others are released in the next step.
+    """
     count = 0
     for r in range(segments.count.n):
         for neighbour in (segments.edges[2 * r] - 1, segments.edges[2 * r + 1]):
@@ -355,7 +359,8 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
     """Predict when the blocks first..last-1 reach the kink of their law, from ``now`` on.
 
     Friction decreases with its argument, the slip or the slip rate, until it reaches the kink, and
-    is constant beyond. Without such a law (``law_kink`` is None) nothing is predicted.
+    is constant beyond. Row ``argument_row`` of the derivatives is this argument. Without such a law
+    (``law_kink`` is None) nothing is predicted.
 
     now, step_end : start and end of the search, counted from the start of the step
     top : order of the highest time derivative of slip

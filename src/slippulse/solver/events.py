@@ -89,8 +89,8 @@ def start_sliding(block_change, medium, motion, block, now, top):
     friction = begin_weakening(motion, medium.law_kink, block)
     block_change[ACCELERATION] -= friction
     # Its higher time derivatives come only from the motion of the two neighbours: derivative k + 2
-    # follows from derivative k of their slip, and from derivative k + 1 because of the damping. Two
-    # more are computed than the step keeps.
+    # follows from derivative k of their slip, and from derivative k + 1 because of the damping. The
+    # two above ``top`` only make the others more exact when they are advanced in time.
     for k in range(1, top + 1):
         block_change[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
         if k < top:
@@ -251,15 +251,16 @@ def add_difference(motion, difference, first, last, block, now, step_end, top):
 def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
     """Return the change of the time derivative of the viscous dissipation by an event of a block.
 
-    The result lacks a constant factor. It is the sum of dv da over the pairs of the block and its
-    two neighbours: dv is the difference of the two velocities, and da the change of the difference
-    of the two accelerations.
+    The result is the sum of dv da over the pairs of the block and its two neighbours: dv is the
+    difference of the two velocities, and da the change of the difference of the two accelerations.
+    `take_event` multiplies it by 2 beta/dx, and doubles it on a mirrored lattice.
     """
     if medium.beta <= 0.0:
         return 0.0
     # At a release or a stick the velocity of the block is 0, and only its own acceleration changes.
     # In both pairs, dv da is therefore minus the velocity of the neighbour times this change.
     neighbour_velocities = velocity_at(w, block + 1, top, now)
+    # The left pair of the block on the axis is the mirror image of the right one.
     is_on_axis = medium.is_mirrored and block == 1
     if not is_on_axis:
         neighbour_velocities += velocity_at(w, block - 1, top, now)
@@ -353,11 +354,11 @@ def apply_event(medium, motion, segments, prediction, difference, event, step_en
         medium, motion, segments, prediction, first, last, now, step_end
     )
     return EventEffect(
-        is_finite,
-        first_changed,
-        last,
-        velocity_before,
-        lowest_stress,
-        loss_slope_change,
-        work_slope_change,
+        is_finite=is_finite,
+        first=first_changed,
+        last=last,
+        velocity_before=velocity_before,
+        lowest_stress=lowest_stress,
+        loss_slope_change=loss_slope_change,
+        work_slope_change=work_slope_change,
     )

@@ -306,7 +306,12 @@ def has_locked_front(solution: Solution) -> bool:
 
 
 def _ends_in_short_cycle(steps_between_releases: np.ndarray) -> bool:
-    """Return True if numbers of steps end in many repeats of a cycle that takes few steps."""
+    """Return True if numbers of steps end in many repeats of a cycle that takes few steps.
+
+    Cycles of many steps are ignored, because they hardly change the front speed.
+
+    steps_between_releases : one number for each two successive releases at a front
+    """
     for cycle_blocks in range(1, MAX_CYCLE_BLOCKS + 1):
         needed = MIN_CYCLE_REPEATS * cycle_blocks
         steps = steps_between_releases[-needed:]

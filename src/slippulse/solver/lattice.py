@@ -53,6 +53,7 @@ class Lattice:
         # A caller can lower this number, to look at the lattice after fewer steps.
         self.max_call_steps = MAX_CALL_STEPS
         self.is_mirrored = scene.symmetric
+        # The damping ``beta`` is that of the scene, or its negative.
         self.medium = self._make_medium(beta)
         self.first_block = 0
         # A Taylor step of order n needs slip and its time derivatives 1 to n + 1. The other schemes
@@ -69,7 +70,7 @@ class Lattice:
         self._release_nucleation()
 
     def _make_medium(self, beta: float) -> arrays.Medium:
-        """Return the constants of the scene for the kernels."""
+        """Return the constants of the scene for the kernels; ``beta`` may have another sign."""
         scene, dx = self.scene, self.scene.dx
         return arrays.Medium(
             dx=dx,
@@ -115,6 +116,7 @@ class Lattice:
         self.history.release_time[nucleation] = 0.0
         for block in nucleation:
             begin_weakening(self.motion, self.medium.law_kink, block)
+        # No block has stuck yet.
         self.tally.first_stick_time = np.nan
         self.tally.releases = nucleation.size
 
@@ -145,7 +147,7 @@ class Lattice:
         size += (PAGE_OFFSET - size) % PAGE_BLOCKS
         self.first_block -= left
         self._extend_motion(old_blocks, size)
-        self._bound_force()
+        self._set_largest_force()
         release_time, stick_time = np.full((2, size), np.nan)
         release_time[old_blocks] = self.history.release_time
         stick_time[old_blocks] = self.history.stick_time
@@ -180,7 +182,7 @@ class Lattice:
             # Block 1 lies at x = 0. The ghost block before it is the mirror image of block 2.
             self.motion.tau[0] = self.motion.tau[2]
 
-    def _bound_force(self) -> None:
+    def _set_largest_force(self) -> None:
         """Set the bound on the force that drives a block, from its pre-stress and friction."""
         traits = self.scene.friction.traits
         # If friction is alpha v with a negative alpha (the linear rate), velocity grows

@@ -123,7 +123,7 @@ class LayerRun:
 class Elastic(NamedTuple):
     """Constants of the layer and of its grid. Arrays have one value for each row y = j h."""
 
-    ratio: float  # dt/h
+    dt_over_h: float  # time step divided by the side of a cell
     shear: float  # gamma/2
     is_mirrored: bool  # node 1 lies on an axis of symmetry
     moving_rows: int  # rows whose v_x is not held
@@ -194,15 +194,15 @@ def update_stresses(elastic, fields, first, last):
         ds_xx/dt = direct dv_x/dx + lateral dv_y/dy     ds_xy/dt = shear (dv_x/dy + dv_y/dx)
         ds_yy/dt = lateral dv_x/dx + normal dv_y/dy
 
-    Derivatives are replaced by differences between neighbours, and ``ratio`` is the time step
-    divided by their distance.
+    The factors are elastic moduli, which can differ from row to row. Derivatives are replaced by
+    differences between neighbours, divided by their distance h.
     """
     vx, vy, sxx, syy, sxy = fields
-    rows, ratio = vy.shape[0], elastic.ratio
+    rows, dt_over_h = vy.shape[0], elastic.dt_over_h
     # s_xx and s_yy on the rows.
     for j in range(rows + 1):
-        direct, lateral = ratio * elastic.direct[j], ratio * elastic.lateral[j]
-        normal = ratio * elastic.normal[j]
+        direct, lateral = dt_over_h * elastic.direct[j], dt_over_h * elastic.lateral[j]
+        normal = dt_over_h * elastic.normal[j]
         # v_y half a cell above and below the row. An outer row has only one of the two.
         weight_above, weight_below = elastic.above[j], elastic.below[j]
         above, below = vy[min(j, rows - 1), first:last], vy[max(j - 1, 0), first:last]
@@ -217,7 +217,7 @@ def update_stresses(elastic, fields, first, last):
         if elastic.is_mirrored:
             sxx[j, 0] = -sxx[j, 1]
     # s_xy, which lies half a cell above row j.
-    factor = ratio * elastic.shear
+    factor = dt_over_h * elastic.shear
     for j in range(rows):
         low, high = vx[j, first:last], vx[j + 1, first:last]
         left, right = vy[j, first - 1 : last - 1], vy[j, first:last]
@@ -232,37 +232,43 @@ def update_velocities(elastic, fields, first, last):
 
         dv_x/dt = ds_xx/dx + ds_xy/dy     dv_y/dt = ds_xy/dx + ds_yy/dy
 
-    Derivatives are replaced by differences between neighbours, and ``ratio`` is the time step
-    divided by their distance. Rows from ``moving_rows`` on have a v_x that is held.
+    Derivatives are replaced by differences between neighbours, divided by their distance h. Rows
+    from ``moving_rows`` on have a v_x that is held.
     """
     vx, vy, sxx, syy, sxy = fields
-    rows, ratio = vy.shape[0], elastic.ratio
+    rows, dt_over_h = vy.shape[0], elastic.dt_over_h
     # v_y, which lies half a cell above row j.
     for j in range(rows):
         left, right = sxy[j, first:last], sxy[j, first + 1 : last + 1]
         low, high = syy[j, first:last], syy[j + 1, first:last]
         v = vy[j, first:last]
         for i in range(v.shape[0]):
-            v[i] += ratio * (right[i] - left[i] + high[i] - low[i])
+            v[i] += dt_over_h * (right[i] - left[i] + high[i] - low[i])
         # Column 0 is a mirror image, in which v_y has the opposite sign.
         if elastic.is_mirrored:
             vy[j, 0] = -vy[j, 1]
-    # v_x on the rows above the bottom. A top row that moves has only the s_xy below it.
+    # v_x on the rows above the bottom. The weights of the s_xy above and below a row are 1. Only a
+    # top row that moves has no s_xy above it (weight 0), and that below it counts twice, since the
+    # row has half the height of a cell.
     for j in range(1, elastic.moving_rows):
         weight_above, weight_below = elastic.above[j], elastic.below[j]
         left, right = sxx[j, first - 1 : last - 1], sxx[j, first:last]
         low, high = sxy[j - 1, first:last], sxy[min(j, rows - 1), first:last]
         v = vx[j, first:last]
         for i in range(v.shape[0]):
-            v[i] += ratio * (right[i] - left[i] + weight_above * high[i] - weight_below * low[i])
+            dsxx_dx = right[i] - left[i]
+            v[i] += dt_over_h * (dsxx_dx + weight_above * high[i] - weight_below * low[i])
 
 
 @kernel_function()
 def compute_strength(elastic, fields, fault, i):
-    """Return the strength of node i, from its motion since the release and its normal stress.
+    """Return the strength of node i (largest friction), from its motion and its normal stress.
 
-    It weakens linearly with the slip since the release. If ``rate`` is not 0, `advance_node` lets
-    the strength depend on slip velocity instead, and keeps it in ``fault.strength``.
+    Without normal stress, it is 1 at rest, and falls linearly with the slip since the release, to 0
+    at the slip ``weakening``. If ``rate`` is not 0, `advance_node` lets the strength depend on slip
+    velocity instead, and keeps it in ``fault.strength``. Pressure, the negative normal stress,
+    strengthens the node by ``coupling`` times its value. The nucleus, where the rupture starts, has
+    no friction.
     """
     if fault.nucleus[i]:
         return 0.0
@@ -302,15 +308,15 @@ def advance_node(elastic, fields, fault, i, dt, time):
             # The load is interpolated linearly in time between two steps.
             delay = excess / (excess - excess_before) if excess_before < 0.0 else 0.0
             fault.release_time[i] = time - delay * dt
-    # Half a cell has half the mass, so that a force changes the velocity twice as much.
+    # A force changes the velocity of a whole cell by dt/h times the force. Half a cell has half the
+    # mass, so that its velocity changes twice as much.
     velocity_before = fields.vx[0, i]
-    velocity = velocity_before + 2.0 * elastic.ratio * (load - strength)
+    velocity = velocity_before + 2.0 * elastic.dt_over_h * (load - strength)
     if velocity <= 0.0:
-        if np.isnan(fault.stick_time[i]):
+        # A node that is released without excess load has not moved, and does not stick.
+        if velocity_before > 0.0 and np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
-            fraction = 0.5
-            if velocity_before > 0.0:
-                fraction = velocity_before / (velocity_before - velocity)
+            fraction = velocity_before / (velocity_before - velocity)
             fault.stick_time[i] = time + (fraction - 0.5) * dt
         velocity = 0.0
         fault.sliding[i] = False
@@ -328,7 +334,8 @@ def advance_node(elastic, fields, fault, i, dt, time):
         distance *= 0.5
     # The friction that acted follows from the change of velocity, also when the node sticks. The
     # two numbers in ``work`` are the work of the pre-stress, and its work minus that of friction.
-    friction = load - (velocity - velocity_before) / (2.0 * elastic.ratio)
+    # The first one is only a scale for the energy error, and counts negative work as positive.
+    friction = load - (velocity - velocity_before) / (2.0 * elastic.dt_over_h)
     fault.work[0] += abs(fault.tau[i]) * distance
     fault.work[1] += (fault.tau[i] - friction) * distance
 
@@ -336,6 +343,9 @@ def advance_node(elastic, fields, fault, i, dt, time):
 @kernel_function()
 def add_damping(elastic, earlier, fields, total, first, last):
     """Set the total stresses, those of ``fields`` plus beta times their rates of change.
+
+    The constant ``elastic.damping`` is beta divided by the time step. The columns on either side of
+    first..last-1 are included, because the velocities depend on them, too.
 
     earlier : stresses one step before, which are replaced by those of ``fields``
     """
@@ -355,15 +365,16 @@ def add_damping(elastic, earlier, fields, total, first, last):
 def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
     """Advance from step ``steps[0]`` to step ``steps[1]``, in the columns that waves can reach.
 
-    damped_fields : `DampedFields`, which share the velocities but not the stresses
+    damped_fields : `DampedFields`: the fields with elastic stresses, with the elastic stresses of
+        the step before, and with total stresses (elastic stresses plus damping). The velocities are
+        the same arrays in all three; without damping, the stresses are the same arrays, too
     columns : `Columns`, which limit the range that is advanced
     """
-    # Fields with the elastic stresses, with those of the step before, and with damping added.
     fields, earlier, total = damped_fields
     centre = columns.centre
     for number in range(steps[0], steps[1]):
-        # Number of columns that a compressional wave has crossed since t = 0.
-        crossed = int(number * elastic.ratio)
+        # Number of columns that a compressional wave of speed 1 has crossed since t = 0.
+        crossed = int(number * elastic.dt_over_h)
         reach = columns.nucleation + crossed + PRECURSOR_CELLS
         first, last = max(1, centre - reach), min(fault.tau.shape[0] - 1, centre + reach)
         # Columns far behind the wave are left out.
@@ -371,6 +382,7 @@ def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
         update_stresses(elastic, fields, first, last)
         if elastic.damping > 0.0:
             add_damping(elastic, earlier, fields, total, first, last)
+        # Without damping, the total stresses are the elastic ones just updated.
         update_velocities(elastic, total, first, last)
         for i in range(first, last):
             advance_node(elastic, total, fault, i, dt, number * dt)
@@ -379,14 +391,16 @@ def advance_layer(elastic, damped_fields, fault, dt, steps, columns):
 def simulate_layer(scene: LayerScene) -> LayerRun:
     """Simulate a rupture on a grid that is so long that no wave reaches its ends.
 
-    The slip and v_x are returned in units of ``slip_scale``, without the outermost columns.
+    The slip and v_x are returned in units of ``slip_scale``, without the two outermost columns,
+    which are never advanced.
     """
     # The time step, and the grid along x.
     h = 1.0 / scene.cells
     dt = COURANT_FRACTION * h / np.sqrt(2.0)
     steps = int(np.ceil(scene.duration / dt))
     nucleation_columns = int(scene.nucleation / h + 0.5)
-    # No wave is faster than 1, so that during the run waves cross at most this many columns.
+    # No wave is faster than 1, so that during the run waves cross at most this many columns. Small
+    # waves of the grid run ahead, for which some columns (PRECURSOR_CELLS) and a margin are added.
     crossed_columns = int(steps * dt / h)
     columns_on_right = nucleation_columns + crossed_columns + 2 * PRECURSOR_CELLS
     # A symmetric layer has one column on the left, the mirror image of the first on the right.
@@ -407,26 +421,33 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     work_of_prestress, work_without_friction = fault.work.tolist()
     advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
-    residual = float(abs(energy - work_without_friction) / work_of_prestress)
+    # The energy balance holds only without damping, and if all columns are advanced.
+    residual = math.nan
+    if scene.beta == 0.0 and math.isinf(scene.trail):
+        missing = abs(energy - work_without_friction)
+        # Without work nothing has moved.
+        residual = missing / work_of_prestress if work_of_prestress else 0.0
     return LayerRun(
         x=x[1:-1],
         slip=fault.slip[1:-1] / scene.slip_scale,
         velocity=fields.vx[:, 1:-1] / scene.slip_scale,
         release_time=fault.release_time[1:-1],
         stick_time=fault.stick_time[1:-1],
-        energy_residual=residual if math.isinf(scene.trail) and not scene.beta else math.nan,
+        energy_residual=residual,
     )
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return the fields of a layer with damping.
+    """Return three groups of fields: with elastic stresses, with those one step before, with total.
 
-    They have its elastic stresses, the same one step before, and the stresses with damping. All
-    three share the velocities. Without damping, they are the same arrays.
+    The total stresses include damping, which is computed from the change of the elastic stresses in
+    a step. All three groups share the velocities, and without damping also the stresses.
     """
     if elastic.damping == 0.0:
-        return DampedFields(fields, fields, fields)
-    return DampedFields(fields, with_own_stresses(fields), with_own_stresses(fields))
+        return DampedFields(elastic=fields, earlier=fields, total=fields)
+    return DampedFields(
+        elastic=fields, earlier=with_own_stresses(fields), total=with_own_stresses(fields)
+    )
 
 
 def with_own_stresses(fields: Fields) -> Fields:
@@ -442,21 +463,23 @@ class LayerState(NamedTuple):
     fault: Fault
 
 
-def layer_at_rest(scene: LayerScene, x: np.ndarray, ratio: float) -> LayerState:
+def layer_at_rest(scene: LayerScene, x: np.ndarray, dt_over_h: float) -> LayerState:
     """Return the layer of a scene before t = 0.
 
     x : positions of the nodes
-    ratio : time step divided by the side of a cell
+    dt_over_h : time step divided by the side of a cell
     """
     return LayerState(
-        _elastic_constants(scene, ratio), _fields_at_rest(scene, x.size), _fault_at_rest(scene, x)
+        elastic=_elastic_constants(scene, dt_over_h),
+        fields=_fields_at_rest(scene, x.size),
+        fault=_fault_at_rest(scene, x),
     )
 
 
-def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
-    """Return the constants of the layer of a scene.
+def _elastic_constants(scene: LayerScene, dt_over_h: float) -> Elastic:
+    """Return the constants of the layer and of its grid of square cells.
 
-    ratio : time step divided by the side of a cell
+    dt_over_h : time step divided by the side of a cell
     """
     # Stiffness of s_yy: 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
     normal = np.ones(scene.cells + 1)
@@ -471,15 +494,16 @@ def _elastic_constants(scene: LayerScene, ratio: float) -> Elastic:
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
-    time_step = ratio / scene.cells
+    time_step = dt_over_h / scene.cells
     # With these types, the kernel computes in the precision of the fields.
     number_type = scene.number_type
     return Elastic(
-        ratio=number_type(ratio),
+        dt_over_h=number_type(dt_over_h),
         shear=number_type(0.5 * scene.gamma),
         is_mirrored=scene.symmetric,
         moving_rows=moving_rows,
         coupling=scene.coupling,
+        # The scene has slip in units of ``slip_scale``, and the layer in units of 1.
         weakening=scene.weakening * scene.slip_scale,
         rate=scene.rate * scene.slip_scale,
         damping=number_type(scene.beta / time_step),

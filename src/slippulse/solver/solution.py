@@ -127,7 +127,9 @@ def _overestimate_of_viscous_loss(
     acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4. Since a run starts at
     rest, the differences of all its steps add up to 3 h D_1/4 of the last step.
 
-    strain_rate : between each block and the next one, at the end
+    strain_rate : between each block and the next one (a bond), at the end
+    bond_weights : 2 if a bond has a mirror image that is not in the arrays, 0 if it is one, else 1
+    step : length of the steps
     """
     dissipation_divided_by_beta = float(
         np.sum(bond_weights * strain_rate * strain_rate) * medium.dx

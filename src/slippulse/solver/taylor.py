@@ -551,6 +551,7 @@ def advance(  # noqa: C901, PLR0912
             apply_simultaneous_events(medium, motion, segments, scratch, history, end, latest, top)
         tally.steps += 1
         tally.time = end
+        # The largest force alone would drive a block from rest to the velocity largest_force * end.
         # This form of the condition is also met by a velocity that is NaN.
         if not fastest <= BLOW_UP_FACTOR * (1.0 + limits.largest_force * end):
             return BLOWN_UP

@@ -173,8 +173,8 @@ class PartWithEdge(Part):
             knots, left_ends = self._refine(knots, left_ends)
             if knots.x.size > MAX_KNOTS:
                 raise ValueError(
-                    f"prestress: stick times that take more than {MAX_KNOTS} knots, since some slip"
-                    " velocities are as small as rounding errors;"
+                    f"prestress: stick times that need more than {MAX_KNOTS} interpolation points,"
+                    " since some slip velocities are as small as rounding errors;"
                     " allowed: pre-stress with more regular stick times"
                 )
         return knots

@@ -66,18 +66,6 @@ def change_by_refinement(rows: pd.DataFrame, part: str, quantity: str) -> pd.Ser
     return (on_finest / on_second_finest - 1.0).abs()
 
 
-def change_with_distance(evidence: Evidence, quantity: str, earlier_station: int) -> pd.Series:
-    """Return the relative change of a quantity from an earlier station to the last one.
-
-    There is one value for each pulse of the part far.
-
-    earlier_station : SECOND_LAST or THIRD_LAST
-    """
-    last = finest_rows(rows_at_station(evidence, LAST), "far")[quantity]
-    earlier = finest_rows(rows_at_station(evidence, earlier_station), "far")[quantity]
-    return (last / earlier - 1.0).abs()
-
-
 def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
     """Return the sliding time divided by the crossing time.
 
@@ -325,7 +313,6 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
     coarse_split_low, coarse_split_high : the same range on the second finest grid
     wide_gamma, wide_energy, wide_split_low, wide_split_high : the same numbers of wide pulses, on
         the finest grid
-    wide_coarse_splits : number of wide pulses that also split on the second finest grid
 
     split : rows of `followed_pulses` with the pulses that split on the finest grid
     """
@@ -341,7 +328,6 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
         "wide_energy": float(wide["fracture_energy"].max()),
         "wide_split_low": float(wide["split_at"].min()),
         "wide_split_high": float(wide["split_at"].max()),
-        "wide_coarse_splits": float(wide["coarse_split_at"].count()),
     }
 
 
@@ -528,17 +514,29 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         grid
     map_NAME : a number of `map_numbers`
     crossings, brittle_energy : the constants CROSSINGS_OF_TRANSITION and BRITTLE_ENERGY
+    crossing_high : longest time for which a point slides, divided by the crossing time
+        (`sliding_in_crossings`)
+
+    Two of the quantities are for runs in which the top may rise (the part free):
+
+    free : time for which a point slides, divided by the crossing time
+    longer : time for which a point slides, divided by the time if the top cannot rise
     """
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
-    numbers = {"crossings": CROSSINGS_OF_TRANSITION, "brittle_energy": BRITTLE_ENERGY}
-    numbers |= formula_numbers(pulses) | {"level_spread": spread_with_level(pulses)}
-    quantities = (
-        quantities_of_all_pulses(pulses)
-        | quantities_at_one_level(pulses)
-        | quantities_in_one_dimension(pulses)
-        | times_of_other_parts(evidence)
-    )
+    numbers = {
+        "crossings": CROSSINGS_OF_TRANSITION,
+        "brittle_energy": BRITTLE_ENERGY,
+        "level_spread": spread_with_level(pulses),
+        "crossing_high": float(sliding_in_crossings(pulses).max()),
+    } | formula_numbers(pulses)
+    quantities = {
+        **quantities_of_all_pulses(pulses),
+        **quantities_at_one_level(pulses),
+        **quantities_in_one_dimension(pulses),
+        "free": sliding_in_crossings(finest_rows(rows, "free")),
+        "longer": times_longer_with_free_top(rows),
+    }
     for name, values in quantities.items():
         numbers |= {f"{name}_low": float(values.min()), f"{name}_high": float(values.max())}
     for quantity in CONVERGED_QUANTITIES:
@@ -552,32 +550,14 @@ def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
 
     level : this level
     formula_speed : front speed by the formula
-    thinnest_formula : pulse width by the formula at the smallest gamma
+    gamma_low, thinnest_formula : smallest gamma, and pulse width by the formula at this gamma
     """
     at_level = with_varied_energy(pulses)
     return {
         "level": float(at_level.index.get_level_values("tau0")[0]),
         "formula_speed": float(at_level["paper_speed"].max()),
+        "gamma_low": float(at_level.index.get_level_values("gamma").min()),
         "thinnest_formula": float(with_smallest_gamma(at_level)["paper_pulse_width"].max()),
-    }
-
-
-def times_of_other_parts(evidence: Evidence) -> dict[str, pd.Series]:
-    """Return times in runs of the parts patch and free, each with one value for each run.
-
-    first_stick : time of the first stick, divided by the time in which a shear wave runs to the top
-        and back. The runs of the part patch end when the region in which the rupture starts has
-        stuck.
-    free : time for which a point slides, divided by the crossing time (`sliding_in_crossings`), if
-        the top may rise
-    longer : time for which a point slides if the top may rise, divided by the time if it cannot
-    """
-    rows = rows_at_station(evidence, LAST)
-    patch = finest_rows(evidence.tables["layer"], "patch")
-    return {
-        "first_stick": patch["first_stick"] / patch["strip_first_stick"],
-        "free": sliding_in_crossings(finest_rows(rows, "free")),
-        "longer": times_longer_with_free_top(rows),
     }
 
 
@@ -597,13 +577,11 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
     return pulses.xs(gamma.min(), level="gamma")
 
 
-def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.Index]:
+def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses by name, each with one value for each pulse.
 
-    gamma, tau0 : elasticity ratio, and level of the pre-stress
     wider : pulse width divided by the width in one dimension with the same friction and with
         damping
-    crossing : time for which a point slides, divided by the crossing time (`sliding_in_crossings`)
     sliding : time for which a point slides, divided by H/c_s, where c_s is the shear wave speed
     slip_over_bound : slip divided by the largest slip that the energy balance allows
     waves : fraction of the released energy that leaves as waves
@@ -614,10 +592,7 @@ def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.I
     relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
     released_energy = 4.0 * relative_slip * (1.0 - relative_slip)
     return {
-        "gamma": gamma,
-        "tau0": pulses.index.get_level_values("tau0"),
         "wider": pulses["pulse_width"] / pulses["damped_pulse_width"],
-        "crossing": sliding_in_crossings(pulses),
         # In these units c_s = sqrt(gamma/2) and H = 1.
         "sliding": pulses["pulse_width"] / pulses["speed"] * np.sqrt(0.5 * gamma),
         "slip_over_bound": pulses["pulse_slip"] / pulses["balance_pulse_slip"],
@@ -628,27 +603,20 @@ def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series | pd.I
 def quantities_at_one_level(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of the pulses that differ only in gamma and fracture energy.
 
-    energy, speed : fracture energy, and front speed
     width : width by the paper's formula divided by the pulse width
-    slip : slip divided by the slip by the paper's formula
     thinnest_width : pulse width at the smallest gamma, at which the layer is thinnest compared with
         the pulses
-    brittle_speed, brittle_slip : speed and slip as above, at the smallest fracture energy
+    brittle_slip : slip divided by the slip by the paper's formula, at the smallest fracture energy
     brittle_crossing : time for which a point slides, divided by the crossing time
         (`sliding_in_crossings`), at fracture energies below BRITTLE_ENERGY
     """
     at_level = with_varied_energy(pulses)
-    slip = at_level["pulse_slip"] / at_level["paper_pulse_slip"]
     energy = at_level["fracture_energy"]
-    is_most_brittle = energy == energy.min()
+    most_brittle = at_level[energy == energy.min()]
     return {
-        "energy": energy,
-        "speed": at_level["speed"],
         "width": at_level["paper_pulse_width"] / at_level["pulse_width"],
-        "slip": slip,
         "thinnest_width": with_smallest_gamma(at_level)["pulse_width"],
-        "brittle_speed": at_level["speed"][is_most_brittle],
-        "brittle_slip": slip[is_most_brittle],
+        "brittle_slip": most_brittle["pulse_slip"] / most_brittle["paper_pulse_slip"],
         "brittle_crossing": sliding_in_crossings(at_level[energy < BRITTLE_ENERGY]),
     }
 
@@ -660,14 +628,12 @@ def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 
     line_speed : front speed
     line_width, line_slip : width and slip, divided by those of the paper's formulas
-    less_damped : width at a smaller damping, divided by the width at the paper's damping
     """
     at_level = with_varied_energy(pulses)
     return {
         "line_speed": at_level["damped_speed"],
         "line_width": at_level["damped_pulse_width"] / at_level["paper_pulse_width"],
         "line_slip": at_level["damped_pulse_slip"] / at_level["paper_pulse_slip"],
-        "less_damped": at_level["less_damped_pulse_width"] / at_level["damped_pulse_width"],
     }
 
 
@@ -698,9 +664,8 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
 
     The numbers of `split_pulses`, which say how many of them split and where, are among these.
 
-    far_speed, far_slip : largest relative change of speed and slip between the last two stations,
-        of pulses that do not split
-    from_near_slip : largest relative change of their slip between the first and the last station
+    from_near_slip : largest relative change of the slip between the first and the last station, of
+        pulses that do not split
     drawn_split : position at which the pulse that a figure shows splits
     """
     numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
@@ -708,15 +673,14 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
     # With an infinite tolerance, a pulse counts as steady if it does not split and if no point
     # slides again behind it.
     is_whole = steady_on_two_grids(evidence, "far", tolerance=np.inf).eq(True)
-    speed_change = change_with_distance(evidence, "speed", SECOND_LAST)
-    slip_change = change_with_distance(evidence, "pulse_slip", SECOND_LAST)
     # The part far has three stations.
-    slip_change_from_first = change_with_distance(evidence, "pulse_slip", THIRD_LAST)
-    return numbers | {
-        "far_speed": float(speed_change[is_whole].max()),
-        "far_slip": float(slip_change[is_whole].max()),
-        "from_near_slip": float(slip_change_from_first[is_whole].max()),
-    }
+    first, last = (
+        finest_rows(rows_at_station(evidence, station), "far")["pulse_slip"]
+        for station in (THIRD_LAST, LAST)
+    )
+    slip_change = (last / first - 1.0).abs()
+    numbers["from_near_slip"] = float(slip_change[is_whole].max())
+    return numbers
 
 
 def split_of_drawn_pulse(evidence: Evidence) -> float:
@@ -748,33 +712,22 @@ def spread_with_level(pulses: pd.DataFrame) -> float:
 
 
 def across_a_step(evidence: Evidence) -> dict[str, float]:
-    """Return the final slip of pulses that enter another pre-stress, and of uniform runs.
+    """Return how much the slip of a pulse that enters another pre-stress differs from steady slip.
 
     lower, higher : the two levels of the pre-stress
-    step_distance : distance of the last station, at which the final slip is measured
-    upwards, downwards : final slip of the pulse that enters a higher or a lower pre-stress
-    uniform_higher, uniform_lower : final slip of a pulse in the higher or lower pre-stress from the
-        start
-    upwards_difference, downwards_difference : relative difference between the slip of the pulse
-        that enters a pre-stress and of the one in it from the start, on the grid where it is larger
+    upwards_difference, downwards_difference : relative difference between the slip at the last
+        station of the pulse that enters the higher or the lower pre-stress, and of a pulse that is
+        in it from the start. The grid with the larger difference counts.
     """
     rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
-    # The slip at the last station, by grid, level before the step and level beyond it. In a uniform
-    # run both levels are equal.
+    # The slip at the last station, with one row for each grid, and one column for each pair of
+    # levels before and beyond the step. In a uniform run both levels are equal.
     final_slip = rows.groupby(["cells", "before", "tau0"])["pulse_slip"].last()
-    slips_on_grids = [final_slip[cells] for cells in sorted(rows["cells"].unique())]
-    finest = slips_on_grids[-1]
-    differences_upwards = [slip[low, high] / slip[high, high] - 1.0 for slip in slips_on_grids]
-    differences_downwards = [slip[high, low] / slip[low, low] - 1.0 for slip in slips_on_grids]
+    slips = final_slip.unstack(["before", "tau0"])
     return {
         "lower": low,
         "higher": high,
-        "step_distance": float(rows["sample_position"].max()),
-        "upwards": float(finest[low, high]),
-        "downwards": float(finest[high, low]),
-        "uniform_lower": float(finest[low, low]),
-        "uniform_higher": float(finest[high, high]),
-        "upwards_difference": max(map(abs, differences_upwards)),
-        "downwards_difference": max(map(abs, differences_downwards)),
+        "upwards_difference": float((slips[low, high] / slips[high, high] - 1.0).abs().max()),
+        "downwards_difference": float((slips[high, low] / slips[low, low] - 1.0).abs().max()),
     }

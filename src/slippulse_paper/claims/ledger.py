@@ -249,13 +249,14 @@ class Ledger:
         """Return some further numbers of a claim as Markdown, such as "12 *cracks*; 3 *pulses*".
 
         Their keys have the form "TEXT: NAME". Those whose TEXT contains the given words are listed.
+        If there is none, the result is "none". A page may break the words at the end of a line.
         """
-        parts = []
+        words, parts = " ".join(words.split()), []
         for key, value in self(id).further.items():
             text, colon, name = key.partition(": ")
             if colon and words in text:
                 parts.append(f"{number(value)} *{name}*")
-        return "; ".join(parts)
+        return "; ".join(parts) or "none"
 
     def count(self, *verdicts: str) -> int:
         """Return the number of counted claims, or of those that have one of the given verdicts."""

@@ -107,8 +107,8 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     is compared with a reference: the pulse of an otherwise equal run that stays at the level 0. By
     theory this pulse keeps its size.
 
-    changed : sign of the velocity change; 0 if it is not larger than the change of the reference
-    widened : sign of the half-width minus that of the reference
+    velocity_growth : sign of the velocity change; 0 if not larger than that of the reference
+    width_growth : sign of the half-width minus that of the reference
 
     Both are -1 if the pulse has died, and 0 if they are unknown.
     """
@@ -119,12 +119,12 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     change = table[VELOCITY_CHANGE]
     has_changed = change.abs() > reference[VELOCITY_CHANGE].abs()
     widening = table[HALF_WIDTH] - reference[HALF_WIDTH]
-    changed = np.sign(change).where(has_changed, 0.0)
-    widened = np.sign(widening)
+    velocity_growth = np.sign(change).where(has_changed, 0.0)
+    width_growth = np.sign(widening)
     has_died = table["regime"] == "arrested"
     return {
-        "changed": changed.mask(has_died, -1.0).fillna(0.0),
-        "widened": widened.mask(has_died, -1.0).fillna(0.0),
+        "velocity_growth": velocity_growth.mask(has_died, -1.0).fillna(0.0),
+        "width_growth": width_growth.mask(has_died, -1.0).fillna(0.0),
     }
 
 
@@ -273,12 +273,13 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     additional requirement is about pulses that enter another pre-stress: all that leave a strain
     behind that is larger than the tolerance must grow or decay.
     """
-    # In this simulation pulses enter the pre-stress level in the column beyond. The column changed
-    # is 1 or -1 if they grow or decay there, and otherwise 0.
+    # In this simulation pulses enter the pre-stress level in the column beyond. The column
+    # velocity_growth is 1 or -1 if they grow or decay there, and otherwise 0.
     enters_stress = "beyond != 0"
     strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
     has_changed = np.array(
-        evidence.holds_in_runs("regimes_beyond", where=enters_stress, holds="changed != 0"), object
+        evidence.holds_in_runs("regimes_beyond", where=enters_stress, holds="velocity_growth != 0"),
+        object,
     )
 
     def changed_if_strained(tolerance: float) -> Qualitative:

@@ -10,23 +10,13 @@ import pandas as pd
 from .evidence import Evidence
 from .kinds import Qualitative
 
-# Columns of an ensemble under a stress boundary that the texts quote.
-QUOTED_COLUMNS = (
-    "level",
-    "deviation",
-    "pulses",
-    "deaths",
-    "cracks",
-    "survival",
-    "low",
-    "high",
-    "death_scale",
-    "stop",
-    "velocity_deviation",
-    "velocity_predicted",
-    "predicted",
-    "velocity_mean",
-)
+# Columns that the texts quote of three ensembles under a stress boundary: the one with the roughest
+# pre-stress, the one with the smoothest, and the one with the highest level.
+QUOTED_COLUMNS = {
+    "rough": ("deviation", "survival", "low", "high", "predicted", "stop"),
+    "quiet": ("deviation", "velocity_deviation", "velocity_predicted"),
+    "above": ("level", "pulses", "deaths", "cracks"),
+}
 # Columns that name an ensemble.
 FIELD_COLUMNS = ["level", "deviation", "correlation_length", "hurst"]
 # Ensembles with fewer deaths have death rates with wide confidence intervals.
@@ -103,8 +93,7 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
     confidence, tail_... : from runs over a long distance, confidence level and interval of the
         exponent with which the survival of pulses falls as a power of the distance
-    rough_..., quiet_..., above_... : columns of the roughest ensemble under a stress boundary, of
-        the smoothest, and of the one with the highest level
+    rough_..., quiet_..., above_... : the columns QUOTED_COLUMNS of three ensembles
 
     The others are explained in the functions that are called.
     """
@@ -129,7 +118,7 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
         "above": stress.loc[stress["level"].idxmax()],
     }
     for name, ensemble in quoted.items():
-        numbers |= {f"{name}_{column}": ensemble[column] for column in QUOTED_COLUMNS}
+        numbers |= {f"{name}_{column}": ensemble[column] for column in QUOTED_COLUMNS[name]}
     numbers |= balance_numbers(checks)
     return {name: float(value) for name, value in numbers.items()}
 
@@ -204,34 +193,31 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
 
 
 def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
-    """Return how near final slip and front speed are to those of steady pulses.
+    """Return how near final slip is to that of steady pulses.
 
     short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
         among those whose slip was recorded (the others have no memory)
-    ..._correlation_length, ..._deviation : of the rough pre-stress
-    ..._local, ..._mean : median relative deviation of the slip from that of a steady pulse at the
-        local pre-stress, and at the mean pre-stress
-    ..._slowness : largest relative deviation of the slowness (time per distance) of a front from
-        the mean slowness of steady fronts at the local pre-stress
+    ..._correlation_length : of the rough pre-stress
+    short_mean : median relative deviation of the slip from that of a steady pulse at the mean
+        pre-stress
+    smooth_local : the same for a steady pulse at the local pre-stress
     memory : distance after which a pulse has forgotten a change of the pre-stress, at the level of
         the first of these ensembles
     forgotten : largest relative change of the slip by a bump that is farther away than the memory
     """
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
-    numbers: dict[str, float] = {}
-    for name, ensemble in (("short", shortest), ("smooth", longest)):
-        numbers |= {
-            f"{name}_correlation_length": ensemble["correlation_length"],
-            f"{name}_deviation": ensemble["deviation"],
-            f"{name}_local": ensemble["off_local"],
-            f"{name}_mean": ensemble["off_mean"],
-            f"{name}_slowness": ensemble["slowness_off"],
-        }
     # In these rows the column distance has the distance from the bump, in units of the memory, and
     # the column high has the largest change of the slip over all runs.
     beyond_memory = checks[(checks["part"] == "memory") & (checks["distance"] >= 1.0)]
-    return numbers | {"memory": shortest["memory"], "forgotten": beyond_memory["high"].max()}
+    return {
+        "short_correlation_length": shortest["correlation_length"],
+        "short_mean": shortest["off_mean"],
+        "smooth_correlation_length": longest["correlation_length"],
+        "smooth_local": longest["off_local"],
+        "memory": shortest["memory"],
+        "forgotten": beyond_memory["high"].max(),
+    }
 
 
 def balance_numbers(checks: pd.DataFrame) -> dict[str, float]:

@@ -41,5 +41,5 @@ def rename_warnings(overlays: Sequence[Mapping[str, Any]]) -> list[str]:
         for old_name, new_name in new_names.items():
             if any(old_name in keys for keys in mappings):
                 line = f"{block}.{old_name} is now {block}.{new_name}"
-                lines.append(f"{line}; the old name is read for one more version")
+                lines.append(f"{line}; the old name is valid for one more version")
     return lines

@@ -98,9 +98,9 @@ function rowsOf({ scene, rupture, exact, pulse, paper, steady }) {
   if (pulse && paper) {
     const late = steady && deviates(pulse, steady) ? " (not yet steady)" : "";
     rows.push([`width of the right pulse at the end${late}`, pulse.width, paper.width]);
-    if (steady) rows.push(["its width once steady", steady.width, paper.width]);
-    rows.push([`slip behind it at the end${late}`, pulse.slip, paper.slip]);
-    if (steady) rows.push(["that slip once steady", steady.slip, paper.slip]);
+    if (steady) rows.push(["width of the steady right pulse", steady.width, paper.width]);
+    rows.push([`slip behind this pulse at the end${late}`, pulse.slip, paper.slip]);
+    if (steady) rows.push(["slip behind the steady right pulse", steady.slip, paper.slip]);
   }
   if (paper) {
     const limit = "no steady pulse above <i>α</i><sub>c</sub>";
