@@ -189,8 +189,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     speed_axes.set_ylabel(r"front speed $v$")
     width_axes.set_ylabel(r"width / $H\sqrt{2/\gamma-1}$")
     slip_axes.set_ylabel(r"slip / $(2\tau_0/\gamma)$")
-    handles, _ = speed_axes.get_legend_handles_labels()
-    speed_axes.legend(handles=handles, loc="lower left", fontsize=SMALL_TEXT)
+    speed_axes.legend(loc="lower left", fontsize=SMALL_TEXT)
     lines = [
         entry("formulas of the paper", color=BLACK, linestyle="--", linewidth=0.8),
         entry("1D, same friction", color=BLACK, linestyle=":"),

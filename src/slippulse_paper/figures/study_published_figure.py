@@ -174,6 +174,8 @@ def _point_to_notebook(axes: Axes, notebook: pd.DataFrame, top: float) -> None:
     """Mark the damping ratio of the authors' notebook, which uses the rule of the total force.
 
     Its chi-square is far above the top of the axes, so that a marker at the top points upwards.
+
+    notebook : the fit with the settings of the notebook, with one row per reading
     """
     chi2 = (notebook["independent_pull"] ** 2).sum()
     label = rf"notebook, total force: $\chi^2 = {chi2:.0f}$"
