@@ -325,6 +325,15 @@ def test_blocks_that_no_rupture_reaches_are_drawn_at_rest():
         assert len(at_barrier) > 2 and at_barrier.isna().all()
 
 
+def test_a_map_in_which_nothing_slides_can_be_drawn():
+    pre_stress = sp.Prestress(0.5, 0.5, peak=0.9)
+    scene = sp.Scene("displacement", pre_stress, duration=2.0, dx=0.1, gamma=0.6)
+    run = sp.simulate(scene, sp.Samples(np.linspace(0.0, 2.0, 11), np.linspace(-5.0, 5.0, 21)))
+    rows = space_time.velocity_rows(run).groupby("role")
+    assert (rows.get_group("map")["value"] == 0.0).all()
+    assert rows.get_group("largest")["value"].tolist() == [0.0]
+
+
 def test_the_drawn_pre_stress_ends_with_the_drawn_positions():
     """The rupture stays on the right of x = 0."""
     profile = sp.Prestress(0.4, 0.4, peak=0.4, bumps=((20.0, 0.65, 1.0),))
