@@ -36,7 +36,11 @@ def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down(draw)
     for _, rows in uniform.query("left >= 0.3 and damping_ratio <= 1").groupby("release"):
         assert len(rows) >= 8 and deviation(rows, "speed", "theory").max() < tol.FRONT_SPEED_STUDY
     ids = {line.get_gid() for line in drawn.figure.findobj(Line2D)}
-    assert {f"theory {ratio:g}" for ratio in uniform["damping_ratio"].unique()} <= ids
+    ratios = [f"{ratio:g}" for ratio in np.sort(uniform["damping_ratio"].unique())]
+    assert {f"theory {ratio}" for ratio in ratios} <= ids
+    # Ratios whose runs are all flagged have an entry, too.
+    (legend,) = drawn.figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ratios
     # Leaf springs, under both rules.
     steady = select(drawn.measured["front_speed_springs"], pulse_state="steady")
     wide = steady[(steady["pulse_width"] >= 4.0 * steady["dx"]) & steady["run_flags"].isna()]
