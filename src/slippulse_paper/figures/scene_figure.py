@@ -119,7 +119,7 @@ def draw(table: pd.DataFrame) -> Figure:
     prestress_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
     space_time.draw_profile(prestress_axes, rows_by_role)
     space_time.draw_map(map_axes, rows_by_role)
-    add_map_legend(map_axes)
+    space_time.add_map_legend(map_axes)
     panel_letter(prestress_axes, "a")
     # A dollar sign in the title is a character, and does not begin a formula.
     title = str(rows_by_role["title"]["series"].iloc[0]).replace("$", r"\$")
@@ -129,18 +129,6 @@ def draw(table: pd.DataFrame) -> Figure:
         panel_letter(axes, letter)
     write_numbers(lower, numbers, line_count)
     return figure
-
-
-def add_map_legend(axes: Axes) -> None:
-    """Add a legend to the map: below a rupture that runs mainly to the left, else above.
-
-    There the map is free at early times. If the legend still covers a part of the rupture, its pale
-    ground keeps it readable.
-    """
-    lowest, highest = axes.get_ylim()
-    runs_to_the_left = -lowest > 1.2 * highest
-    look: Look = {"frameon": True, "edgecolor": "none"}
-    axes.legend(loc="lower left" if runs_to_the_left else "upper left", **look)
 
 
 def draw_field(
