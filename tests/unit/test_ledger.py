@@ -420,6 +420,16 @@ def test_a_pulse_grows_if_it_changes_more_than_one_of_the_same_width_at_level_ze
     assert [*signs["width_growth"]] == [0.0, 1.0, 0.0, -1.0]
 
 
+def test_growth_is_unknown_without_a_pulse_that_stays_at_level_zero():
+    """The second pulse has died, which needs no comparison."""
+    runs = pd.DataFrame({"beyond": [0.2, -0.2], "regime": ["pulse, one-way, growing", "arrested"]})
+    runs = runs.assign(largest_velocity_change=0.1, pulse_half_width=1.0, width=1.0, left=-0.5)
+    runs = runs.assign(right=0.0, dx=0.1, damping_ratio=0.1, release="total", friction="coulomb")
+    signs = growth_signs(runs)
+    assert [*signs["velocity_growth"].isna()] == [True, False]
+    assert [*signs["width_growth"].isna()] == [True, False]
+
+
 def test_a_sweep_may_have_several_release_rules():
     """A length rises with the level by either rule, and damping changes it by a factor of two."""
     lists = {"left": [0.2, 0.4], "release": ["total", "elastic"], "damping_ratio": [0.0, 0.1]}

@@ -120,7 +120,7 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     velocity_growth : sign of the velocity change; 0 if not larger than that of the reference
     width_growth : sign of the half-width minus that of the reference
 
-    Both are -1 if the pulse has died, and 0 if they are unknown.
+    Both are -1 if the pulse has died, and NaN if they are unknown.
     """
     keys = ["left", "right", "width", "dx", "damping_ratio", "release", "friction"]
     references = table[table["beyond"] == 0.0].drop_duplicates(keys).set_index(keys)
@@ -129,12 +129,13 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     change = table[VELOCITY_CHANGE]
     has_changed = change.abs() > reference[VELOCITY_CHANGE].abs()
     widening = table[HALF_WIDTH] - reference[HALF_WIDTH]
-    velocity_growth = np.sign(change).where(has_changed, 0.0)
+    is_known = change.notna() & reference[VELOCITY_CHANGE].notna()
+    velocity_growth = np.sign(change).where(has_changed, 0.0).where(is_known)
     width_growth = np.sign(widening)
     has_died = table["regime"] == "arrested"
     return {
-        "velocity_growth": velocity_growth.mask(has_died, -1.0).fillna(0.0),
-        "width_growth": width_growth.mask(has_died, -1.0).fillna(0.0),
+        "velocity_growth": velocity_growth.mask(has_died, -1.0),
+        "width_growth": width_growth.mask(has_died, -1.0),
     }
 
 
@@ -290,7 +291,12 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     enters_stress = "beyond != 0"
     strains = evidence.finest("regimes_beyond", where=enters_stress)["strain_left"].to_numpy()
     has_changed = np.array(
-        evidence.holds_in_runs("regimes_beyond", where=enters_stress, holds="velocity_growth != 0"),
+        evidence.holds_in_runs(
+            "regimes_beyond",
+            where=enters_stress,
+            holds="velocity_growth != 0",
+            decidable="velocity_growth.notna()",
+        ),
         object,
     )
 
