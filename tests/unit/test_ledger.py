@@ -16,7 +16,7 @@ from slippulse_paper.claims import rules
 from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
 from slippulse_paper.claims.evidence import Evidence, agreed_answers, fit_exponent
-from slippulse_paper.claims.findings import findings, length_changes_by_damping
+from slippulse_paper.claims.findings import NO_NUMBER, findings, length_changes_by_damping
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
 from slippulse_paper.claims.paper_claims import (
@@ -491,7 +491,7 @@ def test_what_is_missing_is_named(tmp_path):
     kept = {"numbers": [row], "text": "{{ n.a }}"}
     empty = kept | {"numbers": [row | {"where": "left > 1"}]}
     written = findings(evidence(), 0.1, {"kept": kept, "empty": empty})
-    assert [finding["text"] for finding in written] == ["0.800", "not measured"]
+    assert [finding["text"] for finding in written] == ["0.800", NO_NUMBER]
     path, changed = tmp_path / "claims.yaml", {"tolerance": 0.2}
     path.write_text("claims: {one: {tolerance: 0.1}}\n", encoding="utf-8")
     assert read_entries(path, {"one": changed})["claims"]["one"] == changed

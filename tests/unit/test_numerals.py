@@ -6,7 +6,7 @@ import pytest
 
 from slippulse_paper.report.html import markup_of
 from slippulse_paper.text.numerals import number, percent, rounded, setting, short, with_uncertainty
-from slippulse_paper.text.prose import fill
+from slippulse_paper.text.prose import fill, without_missing
 
 NOT = "not measured"
 # A value, its uncertainty, and how both are written.
@@ -63,3 +63,17 @@ def test_texts_for_pages_are_one_paragraph_each_and_show_raw_html():
         markup_of(["# a heading"])
     with pytest.raises(ValueError, match="without a horizontal rule"):
         markup_of(["* * *", "words"])
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("It is 5. It was not measured. The end.", "It is 5. The end."),
+        ("**Lead.** The speed $v$ is not measured.\n\nNext one.", "\n\nNext one."),
+        ("**Lead.** It is not measured times 2. So\nit is.", "**Lead.** So\nit is."),
+        ("- One is not measured.\n- Two. It is not measured.\n- Three.", "- Two.\n- Three."),
+        ("| a | not measured |\n\nIs it not measured? No.", "| a | not measured |\n\nNo."),
+    ],
+)
+def test_a_sentence_with_a_missing_number_is_left_out(text, shown):
+    assert without_missing(text) == shown

@@ -12,11 +12,14 @@ import pandas as pd
 
 from slippulse.measurement.inference import infer_parameters
 
-from ..text.prose import fill
+from ..text.prose import fill, without_missing
 from . import layer_claims as layer
 from . import rough_claims as rough
 from . import transition_claims as transition
 from .evidence import Evidence, evaluated, value_of
+
+# The text of a finding of which no number was measured.
+NO_NUMBER = "This run has no number for this finding."
 
 
 def findings(
@@ -33,7 +36,8 @@ def findings(
         expression_groups = entry.get("numbers", [])
         values = all_numbers(evidence, damping_ratio, id, expression_groups)
         # In the text the numbers are n.NAME.
-        text = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
+        filled = fill(entry["text"], {"n": SimpleNamespace(**values) if values else None})
+        text = without_missing(filled) or NO_NUMBER
         tables = [group["table"] for group in expression_groups]
         source = ", ".join([*tables, *entry.get("source", [])])
         all_findings.append({"id": id, "numbers": values, "text": text, "source": source})

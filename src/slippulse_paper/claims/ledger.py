@@ -153,6 +153,8 @@ class QualitativeEntry(Entry):
     def measured_text(self) -> str:
         """Return the numbers of runs in which the statement holds, fails or is undecided."""
         total = self.held + self.failed + self.undecided
+        if not total:
+            return MISSING
         parts = [f"{self.held} of {total}"]
         if self.failed:
             parts.append(f"{self.failed} against")

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from ..text.prose import fill
+from ..text.prose import fill, without_missing
 from . import (
     friction_claims as friction_laws,
 )
@@ -231,7 +231,7 @@ def final_texts(
         explanation = explanations[fields["verdict"]]
         why = fill_in_one_line(explanation, {**values, "why": why, "doubt": doubt})
     # If the reason is still empty, the claim gets one from its numbers.
-    ledger_entry = with_texts({**fields, "why": why})
+    ledger_entry = with_texts({**fields, "why": without_missing(why)})
     return {"note": note, "why": ledger_entry.why_text()}
 
 

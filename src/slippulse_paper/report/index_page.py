@@ -15,7 +15,7 @@ from PIL import Image
 
 from ..claims.claim_texts import read_text
 from ..claims.ledger import Ledger
-from ..text.prose import fill
+from ..text.prose import fill, without_missing
 from .claims_page import SIGNS
 from .html import markup_of, page
 from .texts import (
@@ -101,11 +101,12 @@ def _read_texts(paths: Mapping, figures: Iterable[str], config: Mapping, ledger:
     return _Texts(
         paragraphs={
             "question": evaluated(summary["question"]),
-            "accuracy": evaluated(summary["accuracy"]),
+            "accuracy": without_missing(evaluated(summary["accuracy"])),
             "answer": answer([first_line]),
         },
         glossary=[
-            (evaluated(word["term"]), evaluated(word["meaning"])) for word in summary["words"]
+            (evaluated(word["term"]), without_missing(evaluated(word["meaning"])))
+            for word in summary["words"]
         ],
         rows=statement_rows(summary, ledger, evaluated),
         captions={name: _caption_of(name, captions) for name in figures},

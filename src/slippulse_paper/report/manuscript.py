@@ -21,7 +21,7 @@ from ..claims.claim_texts import coverage, read_text
 from ..claims.ledger import Ledger
 from ..records.provenance import changes
 from ..text.numerals import percent
-from ..text.prose import fill
+from ..text.prose import fill, without_missing
 from .report_tables import alteration_note, errata, verdicts
 from .texts import Caption, answer, judged_lines, parameters, read_captions, read_errata
 
@@ -182,7 +182,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
         "question": summary["question"],
         "answer": answer(lines),
         "symbols": summary["symbols"],
-        "accuracy": evaluated(summary["accuracy"]),
+        "accuracy": without_missing(evaluated(summary["accuracy"])),
         "verdicts": lambda: verdicts(lines),
         "errata": lambda: errata(misprints, evaluated),
     }
@@ -244,7 +244,7 @@ def execute(source: Path, inputs: Inputs) -> str:
             if cell.cell_type == "code":
                 exec(compile(cell.source, str(source), "exec"), names)
             else:
-                shown.append(fill(cell.source, names))
+                shown.append(without_missing(fill(cell.source, names)))
         except Exception as error:
             first_line = cell.source.strip().splitlines()[0][:70]
             reason = " ".join(str(error).split())

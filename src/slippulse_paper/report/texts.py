@@ -15,7 +15,8 @@ from slippulse.model.scene import EXTRA_TERMS
 from ..claims.claim_texts import read_text
 from ..claims.ledger import Entry, Ledger
 from ..claims.rules import WORST_FIRST
-from ..text.numerals import setting
+from ..text.numerals import MISSING, setting
+from ..text.prose import without_missing
 
 # The keys of an erratum. The text of `alters` names what the misprint changes in the paper.
 ERRATUM = ("where", "printed", "right", "shown", "alters")
@@ -68,7 +69,7 @@ def read_captions(path: str | Path, fill: Callable[[str], str] = str) -> dict[st
     captions = {}
     for name, parts in read_text(path).items():
         _check_keys(f"{path}: {name}", parts, Caption._fields)
-        filled = {key: " ".join(fill(text).split()) for key, text in parts.items()}
+        filled = {key: without_missing(" ".join(fill(text).split())) for key, text in parts.items()}
         captions[name] = Caption(**filled)
     return captions
 
@@ -176,7 +177,10 @@ def statement_rows(
     rows = []
     for row in summary["statements"]:
         claim = worst_claim(ledger, row["claims"])
-        rows.append(StatementRow(fill(row["statement"]), claim, fill(row["number"])))
+        # The number consists of phrases, of which those with a missing number are left out.
+        phrases = fill(row["number"]).split("; ")
+        measured = "; ".join(phrase for phrase in phrases if MISSING not in phrase)
+        rows.append(StatementRow(fill(row["statement"]), claim, measured or MISSING))
     return rows
 
 
@@ -221,7 +225,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
         line = Line(
             topic=entry["topic"],
             named=entry["named"],
-            text=fill(entry["text"]),
+            text=without_missing(fill(entry["text"])),
             claim=worst,
             clause=fill(clause_by_verdict.get(worst.verdict, "")),
             verdicts=_first_claim_and_subjects_by_verdict(ledger, subjects),
