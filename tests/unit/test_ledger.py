@@ -377,13 +377,18 @@ def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
 
 def test_a_pulse_is_undecided_without_a_steady_one_and_if_it_has_not_formed():
     same = {"gamma": 0.65, "damping_ratio": 0.1, "exact_pulse_slip": 1.0, "paper_pulse_slip": 1.0}
+    same |= {"release": "total", "friction": "coulomb", "scheme": "localised"}
     steady = pd.DataFrame({"left": [0.3, 0.6], "pulse_slip": 1.0}).assign(**same)
+    # The slip of this pulse still changes, and the next is a pulse of the continuum.
+    young = pd.DataFrame({"left": [0.7], "pulse_slip": 0.9}).assign(**same, slip_variation=0.1)
+    exact = young.assign(left=0.8, slip_variation=0.0, scheme="continuum")
+    steady = pd.concat([steady.assign(slip_variation=1e-6), young, exact])
     perturbed = pd.DataFrame(
         {
-            "beyond": [0.3, 0.6, 0.9, 0.6, 0.6],
-            "pulse_slip": [1.0, 1.1, 1.0, NAN, NAN],
+            "beyond": [0.3, 0.6, 0.9, 0.6, 0.6, 0.7, 0.8],
+            "pulse_slip": [1.0, 1.1, 1.0, NAN, NAN, 1.0, 1.0],
             # The run of the fourth rupture ends when it is still a crack. The fifth pulse has died.
-            "transition_time": [4.0, 4.0, 4.0, NAN, 4.0],
+            "transition_time": [4.0, 4.0, 4.0, NAN, 4.0, 4.0, 4.0],
         }
     )
     tables = {PERTURBED: [perturbed.assign(**same)] * 3, UNPERTURBED: [steady] * 3}
@@ -391,7 +396,7 @@ def test_a_pulse_is_undecided_without_a_steady_one_and_if_it_has_not_formed():
         tolerance=lambda id: 0.01, lattices=lambda *simulations: tables[simulations]
     )
     judged = perturbed_pulses_settle(evidence, "perturbed_pulses_settle")
-    assert judged.decided == [True, False, None, None, False]
+    assert judged.decided == [True, False, None, None, False, None, None]
     assert judged.further["largest deviation of the slip"] == pytest.approx(0.1)
 
 

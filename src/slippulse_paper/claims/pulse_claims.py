@@ -22,6 +22,8 @@ TWO_WAY = "pulses, two-way"
 # Columns of the measured table.
 VELOCITY_CHANGE = "largest_velocity_change"
 HALF_WIDTH = "pulse_half_width"
+# Pulses can be equal only if these columns are.
+SAME_PULSE = ("gamma", "damping_ratio", "release", "friction", "scheme")
 # Conditions that select runs.
 WITHOUT_DAMPING = "damping_ratio == 0"
 WITH_DAMPING = "damping_ratio > 0"
@@ -224,7 +226,7 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
     allowed = evidence.tolerance(id)
     decided: list[bool | None] = []
     # The column beyond has the level in which a pulse ends, and in which it is measured.
-    for _, same_prestress in table.groupby(["beyond", "gamma", "damping_ratio"]):
+    for _, same_prestress in table.groupby(["beyond", *SAME_PULSE]):
         for differences, uncertainties in differences_of_pairs(same_prestress, sizes):
             decided.append(all_within(differences, uncertainties, allowed))
     return Qualitative(decided=decided)
@@ -237,9 +239,12 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
     and on the two finest lattices. Deviations from two predicted slips are shown, too.
     """
     deviations_by_lattice, answers_by_lattice = [], []
+    largest_variation = evidence.tolerance("steady_for_any_prestress")
     perturbed, unperturbed = evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED)
     for pulses, steady_pulses in zip(perturbed, unperturbed, strict=True):
-        matching = matching_steady_pulses(pulses, steady_pulses)
+        # A pulse of a short run is not steady yet.
+        is_steady = steady_pulses["slip_variation"] < largest_variation
+        matching = matching_steady_pulses(pulses, steady_pulses[is_steady])
         # The three slips of a steady pulse: simulated, exact, and by the formula without damping.
         steady_slips = matching[["pulse_slip", "exact_pulse_slip", "paper_pulse_slip"]]
         final_slips = pulses[["pulse_slip"]].to_numpy()
@@ -271,11 +276,11 @@ def matching_steady_pulses(pulses: pd.DataFrame, steady_pulses: pd.DataFrame) ->
     The row is NaN if there is no such steady pulse.
     """
     # A steady pulse is in uniform pre-stress, whose level is in the column left.
-    keys = ["left", "gamma", "damping_ratio"]
+    keys = ["left", *SAME_PULSE]
     # Several simulations may have the same steady pulse.
     by_level = steady_pulses.drop_duplicates(keys).set_index(keys)
     # The column beyond has the level that a pulse enters.
-    entered = pulses[["beyond", "gamma", "damping_ratio"]]
+    entered = pulses[["beyond", *SAME_PULSE]]
     return by_level.reindex(pd.MultiIndex.from_frame(entered))
 
 

@@ -39,6 +39,8 @@ from .space_time_claims import readings_by_name
 # Condition under which blocks do not slide back. The threshold that the paper prints also applies
 # backwards, so a pre-stress of -1 or less would make blocks slide back at once.
 NO_BACKWARD_SLIP = "left > -1"
+# Condition under which a front has stopped. Otherwise the run ends while blocks are still released.
+HAS_STOPPED = "end_time > 1.1 * last_release_time"
 # A front counts as arrested at x_minus if its distance from x_minus is at most this. The unit is
 # the thickness H of the layer, which is the smallest length of the model.
 MAX_ARREST_GAP = 1.0
@@ -486,7 +488,7 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     shown are those of all runs together.
     """
     sweeps = ("scaling_stress", "damping_stress", "space_time_stress", "arrest_profiles")
-    tables = evidence.lattices(*sweeps, where=NO_BACKWARD_SLIP)
+    tables = evidence.lattices(*sweeps, where=f"{NO_BACKWARD_SLIP} and {HAS_STOPPED}")
     finest = tables[0]
     runs = []
     # Claims about open choices are judged at these damping ratios.
@@ -585,9 +587,13 @@ def divergence(runs: pd.DataFrame) -> Divergence:
     both must be powers of gamma with an exponent that is negative by more than three standard
     errors. The answer is None if there are fewer than three values of gamma.
 
-    runs : runs that differ only in gamma, in ascending order
+    runs : runs that differ only in gamma, in ascending order. Runs that end before the transition
+        are left out
     """
     quantities = ["transition_time", "transition_length"]
+    runs = runs.dropna(subset=quantities)
+    if runs.empty:
+        return Divergence(None, time_exponent=NAN, length_exponent=NAN)
     changes = runs[quantities].diff()[1:]
     always_fall = (changes < 0.0).all(axis=None)
     logs = np.log(runs[["gamma", *quantities]].head(3))
