@@ -68,6 +68,8 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
     rows = ensembles(evidence, "stress")
     velocity_spread = rows["velocity_deviation"] / rows["velocity_mean"]
     changed = (velocity_spread > evidence.tolerance(id)) | (rows["deaths"] > 0)
+    if rows.empty:
+        return Qualitative(decided=[])
     # The ensemble with the smoothest pre-stress is shown with the claim.
     smoothest = rows.loc[rows["deviation"].idxmin()]
     further = {

@@ -25,7 +25,7 @@ from slippulse.theory.rupture import Rupture
 from ..configuration.expand import expand
 from ..configuration.profiles import ExpandedProfiles
 from .rough_prestress import CELL_MIDDLES, ROUGH_KEYS, START, fate_of_pulse, prestress_integral
-from .rough_theory import balance_position
+from .rough_theory import LOWEST_LEVEL, balance_position
 from .survival_statistics import Fate, death_rate
 
 NEEDS = {"sweeps": ["rough_displacement", "rough_settling", "rough_stress"]}
@@ -68,8 +68,14 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     parts.append(balance_rows(first_ensemble_under_stress, sweeps["rough_stress"]))
     # In this sweep the pre-stress varies little, and pulses do not die.
     settling = sweeps["rough_settling"]
-    parts += [exact_rows(ensemble, settling) for ensemble in ensembles_of(settling)]
-    parts += [memory_rows(ensemble, settling) for ensemble in ensembles_of(settling)]
+    # Only these ensembles have steady pulses.
+    with_pulses = [
+        ensemble
+        for ensemble in ensembles_of(settling)
+        if parameters_of(ensemble)["level"] >= LOWEST_LEVEL
+    ]
+    parts += [exact_rows(ensemble, settling) for ensemble in with_pulses]
+    parts += [memory_rows(ensemble, settling) for ensemble in with_pulses]
     return pd.concat(parts, ignore_index=True)
 
 

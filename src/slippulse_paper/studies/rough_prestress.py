@@ -24,6 +24,7 @@ from slippulse.theory.pulse import steady_pulse
 
 from ..configuration.profiles import ExpandedProfiles, prestress_of
 from .rough_theory import (
+    LOWEST_LEVEL,
     balance_position,
     barrier_rate,
     diffusivity,
@@ -96,17 +97,19 @@ def table(data: Mapping[str, xr.Dataset], tables: dict, settings: dict) -> pd.Da
     parts = [displacement_rows(ensemble) for ensemble in by_boundary["displacement"]]
 
     under_stress = by_boundary["stress"]
-    # One of the ensembles has no roughness.
-    (smooth,) = (ensemble for ensemble in under_stress if ensemble.parameters["deviation"] == 0.0)
-    smooth_profile = smooth.profiles[0]
+    rough_ensembles = [one for one in under_stress if one.parameters["deviation"] > 0.0]
+    smooth_profile = without_roughness(under_stress[0].profiles[0])
     # The push that a pulse has far away if there is no roughness.
     smooth_push = push_at(prestress_integral(smooth_profile), CELL_MIDDLES.size - 1)
     # More pulses with the roughness of the first ensemble are followed over a long distance.
-    parts.append(long_distance_rows(under_stress[0], smooth_profile))
-    for ensemble in under_stress:
-        if ensemble is not smooth:
-            parts.append(stress_rows(ensemble, smooth_push))
+    parts += [long_distance_rows(first, smooth_profile) for first in rough_ensembles[:1]]
+    parts += [stress_rows(ensemble, smooth_push) for ensemble in rough_ensembles]
     return pd.concat(parts, ignore_index=True)
+
+
+def without_roughness(profile: dict) -> dict:
+    """Return a profile of the pre-stress whose rough part is replaced by its mean level."""
+    return profile | {"rough": profile["rough"] | {"deviation": 0.0}}
 
 
 def ensembles_of(data: xr.Dataset, profiles: Iterable[dict]) -> Iterator[Ensemble]:
@@ -160,7 +163,7 @@ def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
     # Deaths are counted from START on, which is beyond the region that the nucleation reaches.
     row = {"part": "ensemble"} | death_rate(fates, START)
     row |= barrier_rate(ensemble.parameters, ensemble.release)
-    if "slip" in ensemble.runs[0]:
+    if "slip" in ensemble.runs[0] and ensemble.parameters["level"] >= LOWEST_LEVEL:
         row |= steady_pulse_comparison(ensemble)
     curve = survival(fates).assign(part="survival")
     return pd.concat([pd.DataFrame([row]), curve]).assign(**ensemble.parameters)

@@ -16,6 +16,8 @@ from scipy.special import ndtr
 
 from slippulse.theory.barrier import barrier_depth
 
+# Theory has no steady pulse at a lower mean level, at which fronts are hardly faster than waves.
+LOWEST_LEVEL = 1e-4
 # The death rate is maximised over these barriers, given as -(stress of the barrier)/(mean level).
 RELATIVE_BARRIERS = np.geomspace(0.03, 10.0, 12)
 # A random walk with exponentially correlated steps that ends at 0 is like a Brownian motion that
@@ -47,9 +49,11 @@ def barrier_rate(parameters: Mapping[str, Any], release: str) -> dict[str, float
     critical depth, which theory gives for each stress of the barrier. So a pulse dies where the
     mean of the pre-stress over a critical depth falls below that stress. This mean is a Gaussian
     field, and Rice's formula gives the rate of its downcrossings. The stress with the largest rate
-    is chosen from RELATIVE_BARRIERS.
+    is chosen from RELATIVE_BARRIERS. All numbers are NaN below LOWEST_LEVEL.
     """
     level = parameters["level"]
+    if level < LOWEST_LEVEL:
+        return dict.fromkeys(("barrier_rate", "barrier", "depth"), math.nan)
     wave_numbers, variances = spectrum(parameters)
     most_frequent = {"barrier_rate": 0.0, "barrier": math.nan, "depth": math.nan}
     for barrier in level * RELATIVE_BARRIERS:
