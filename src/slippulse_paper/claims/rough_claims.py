@@ -12,6 +12,8 @@ from .kinds import Qualitative
 
 # Columns that name an ensemble.
 FIELD_COLUMNS = ["level", "deviation", "correlation_length", "hurst"]
+# Columns of ensembles whose slip was recorded.
+SLIP_COLUMNS = ["memory", "off_mean", "off_local"]
 # Ensembles with fewer deaths have death rates with wide confidence intervals.
 LEAST_DEATHS = 5
 # A death rate is at most 3 divided by the distance without a death, at 95 % confidence.
@@ -21,6 +23,8 @@ RULE_OF_THREE = 3.0
 def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
     """Return one row for each ensemble of runs under a boundary condition."""
     table = evidence.tables["rough_prestress"]
+    # No ensemble has these columns if no slip was recorded.
+    table = table.reindex(columns=table.columns.union(SLIP_COLUMNS, sort=False))
     return table[(table["part"] == "ensemble") & (table["boundary"] == boundary)]
 
 
@@ -36,6 +40,8 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     least_deviation : least standard deviation of these ensembles, divided by the level
     """
     rows = ensembles(evidence, "displacement")
+    # The paper has pulses at positive levels only.
+    rows = rows[rows["level"] > 0.0]
     roughness = rows["deviation"] / rows["level"]
     is_smooth = roughness <= evidence.tolerance(id)
     smooth, rough = rows[is_smooth], rows[~is_smooth]
@@ -165,7 +171,8 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
     study : the table rough_prestress, which also has the survival curves of the ensembles
     """
     calm = ensembles[ensembles["deaths"] == 0]
-    worst = ensembles.loc[ensembles["rate"].idxmax()]
+    # A rate is NaN if no pulse went far enough.
+    worst = ensembles.loc[ensembles["rate"].fillna(-1.0).idxmax()]
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
     is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
     # The rows of the survival curve are in the order of the distance.
@@ -214,6 +221,9 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
     """
     # Ensembles whose slip was not recorded have no value in the column memory.
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
+    if with_slip.empty:
+        # All numbers are then NaN.
+        with_slip = with_slip.reindex([0])
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
     # In these rows the column distance has the distance from the bump, in units of the memory, and
     # the column high has the largest change of the slip over all runs.
