@@ -22,7 +22,14 @@ from pypdf import PdfReader
 
 from slippulse.data.files import CONFIGURATION_VARIABLE
 from slippulse.plotting import style
-from slippulse.plotting.style import COLOUR_CYCLE, COLUMN_WIDTH, FONT_FAMILY, SCALES, colour_scale
+from slippulse.plotting.style import (
+    COLOUR_CYCLE,
+    COLUMN_WIDTH,
+    FONT_FAMILY,
+    PAGE_WIDTH,
+    SCALES,
+    colour_scale,
+)
 from slippulse_paper.figures.fig06_burridge_knopoff import STATE_COLOURS
 from slippulse_paper.steps import draw_figure
 
@@ -108,6 +115,16 @@ def test_a_png_of_few_colours_shows_them_exactly(tmp_path):
         shown = np.asarray(image.convert("RGB"))
     np.testing.assert_array_equal(shown, np.asarray(canvas.buffer_rgba())[..., :3])
     assert len(np.unique(shown.reshape(-1, 3), axis=0)) == 3
+
+
+def test_a_note_is_written_below_the_legend_of_a_figure(tmp_path):
+    figure, (axes,) = style.new_panels(PAGE_WIDTH, 2.0, "a")
+    (line,) = axes.plot([0.0, 1.0], label="a long text of a legend that is as wide as the figure")
+    style.legend_below(figure, [line, line, line], columns=3)
+    note = "altered: gamma = 0.3, and some other keys of the configuration"
+    style.save_figure(figure, tmp_path / "figure.png", tmp_path / "figure.pdf", note)
+    (legend,), (text,) = figure.legends, figure.texts
+    assert not legend.get_window_extent().overlaps(text.get_window_extent())
 
 
 def test_a_job_draws_in_the_house_style_and_leaves_settings_around_it(tmp_path):

@@ -124,13 +124,14 @@ def judge_right_panel(evidence: Evidence, id: str) -> Reading:
 def values_of_our_figure(evidence: Evidence, simulation: str) -> dict[str, float]:
     """Return the values in our own figure that correspond to the readings of one panel.
 
-    They are means over all runs. The key is what was read, in words, such as "slope of the front".
+    The figure draws the first run, whose values are NaN if it is flagged. The key is what was read,
+    in words, such as "slope of the front".
 
     simulation : name of the simulation of the panel
     """
-    runs = evidence.finest(simulation)
+    drawn_run = evidence.finest(simulation).reindex([0]).iloc[0]
     values = {}
     for reading in evidence.readings.values():
         if reading["simulation"] == simulation:
-            values[reading["statement"]] = float(runs[reading["quantity"]].mean())
+            values[reading["statement"]] = float(drawn_run[reading["quantity"]])
     return values

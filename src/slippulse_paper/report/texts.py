@@ -104,12 +104,13 @@ def listed(words: Sequence[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def parameters(config: Mapping, name: str) -> str:
+def parameters(config: Mapping, name: str, first: bool = False) -> str:
     """Return the parameters of a simulation in Markdown, such as "$\\Gamma=1$, $W$ = 1 and 2".
 
     Raises ValueError if the configuration does not have the simulation.
 
     name : name of the simulation
+    first : if True, only the parameters of its first run are returned
     """
     if name not in config["simulations"]:
         raise ValueError(f"simulation: {name!r}; allowed: {', '.join(config['simulations'])}")
@@ -131,7 +132,8 @@ def parameters(config: Mapping, name: str) -> str:
     values[r"$\beta$"] = simulation.get("beta")
     if not values[r"$\beta$"]:
         values["$b$"] = simulation.get("damping_ratio") or [config["model"]["damping_ratio"]]
-    texts = [f"{symbol} = {_values_text(given)}" for symbol, given in values.items() if given]
+    used = slice(1 if first else None)
+    texts = [f"{symbol} = {_values_text(given[used])}" for symbol, given in values.items() if given]
     return ", ".join([boundary, *texts])
 
 

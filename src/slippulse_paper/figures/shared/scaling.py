@@ -85,7 +85,9 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
     _scatter(axes, runs, predicted, measured, colours, s=15.0, linewidths=edge_width)
     smallest = min(predicted.min(), measured.min())
     largest = max(predicted.max(), measured.max())
-    ends = [smallest / 1.4, largest * 1.4]
+    # A few runs would be hidden by the insets if the axes spanned less than a decade.
+    margin = max(1.4, np.sqrt(10.0 * smallest / largest))
+    ends = [smallest / margin, largest * margin]
     axes.plot(ends, ends, color=BLACK, linewidth=0.8, zorder=0, gid="equality")
     axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends)
     for axis in (axes.xaxis, axes.yaxis):
