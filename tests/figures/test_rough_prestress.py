@@ -40,6 +40,13 @@ def test_kaplan_meier_of_a_case_by_hand():
     assert tuple(curve.loc[1.0, ["low", "high"]]) == pytest.approx(ends, rel=1e-6)
 
 
+def test_the_band_of_a_fraction_contains_the_fraction():
+    """At the end no pulse is alive."""
+    curve = survival([Fate(1.0, True), Fate(2.0, True), Fate(3.0, True)])
+    assert curve["survival"].iloc[-1] == 0.0
+    assert (curve["low"] <= curve["survival"]).all() and (curve["survival"] <= curve["high"]).all()
+
+
 def test_rates_and_intervals_of_known_cases():
     rate = death_rate([Fate(3.0, True), Fate(15.0, True), Fate(25.0, False)], start=5.0)
     assert rate["rate"] == pytest.approx(1.0 / 30.0) and rate["deaths"] == 1
@@ -219,3 +226,21 @@ def test_pulses_are_compared_with_steady_ones_of_their_release_rule(shipped, rel
     row = rough_prestress.displacement_rows(ensemble).iloc[0]
     expected = barrier_depth(row["level"], row["barrier"], 0.65, 0.1, release)
     assert row["depth"] == pytest.approx(expected, rel=1e-12)
+
+
+def test_no_ensemble_has_to_be_smooth_and_none_has_to_have_pulses(shipped):
+    """The shipped ensembles under a stress boundary include one without roughness."""
+    data, sweeps = {}, {}
+    for name in rough_prestress.NEEDS["data"]:
+        sweep = small_sweep(shipped, name)
+        profile = sweep["profiles"][0]
+        level = 0.0 if name == "rough_stress" else -0.2
+        rough = profile["rough"] | {"seed": [1], "level": level, "deviation": 0.1}
+        sweeps[name] = sweep | {"profiles": [profile | {"rough": rough}], "duration": {"time": 5.0}}
+        scenes, samples = expand(sweeps[name])
+        data[name] = run_sweep(scenes, samples, sweep["record"], threads=2)
+    rows = rough_prestress.table(data, {}, {"sweeps": sweeps}).query("part == 'ensemble'")
+    assert [*rows["boundary"]] == ["displacement", "displacement", "stress"]
+    assert rows["barrier_rate"].isna().all()
+    checks = rough_checks.table({}, {}, {"sweeps": sweeps})
+    assert "memory" not in checks["part"].to_numpy()

@@ -222,6 +222,8 @@ def test_the_parameters_of_a_simulation_in_words(shipped):
     words = r"$\Gamma=0$, $\tau_{0,l}$ = −1 and −0.5, $\tau_{0,r}$ = 0, then $\tau$ = 0.1 and 0.3, "
     words += "$W$ = 1 and 2, $b$ = 0, 0.1 and 0.3"
     assert texts.parameters(config, "two") == words
+    words = r"$\Gamma=0$, $\tau_{0,l}$ = −1, $\tau_{0,r}$ = 0, then $\tau$ = 0.1, $W$ = 1, $b$ = 0"
+    assert texts.parameters(config, "two", first=True) == words
     # A profile without a Gaussian has no width.
     config["simulations"]["two"] |= {"profiles": [{"width": None}, {"width": 2.0}]}
     assert "$W$ = 2, $b$" in texts.parameters(config, "two")

@@ -15,7 +15,7 @@ from slippulse.model.measured_columns import RECORD_FOR
 from slippulse_paper.claims import rules
 from slippulse_paper.claims.choices import LAST_RELEASE_FRACTION, Combination, over_choices
 from slippulse_paper.claims.claim_texts import read_entries, read_text
-from slippulse_paper.claims.evidence import Evidence, agreed_answers, fit_exponent
+from slippulse_paper.claims.evidence import Evidence, agreed_answers, evaluated, fit_exponent
 from slippulse_paper.claims.findings import NO_NUMBER, findings, length_changes_by_damping
 from slippulse_paper.claims.kinds import Approximate, Equation, Qualitative, Reading
 from slippulse_paper.claims.ledger import Ledger, with_texts
@@ -34,6 +34,7 @@ from slippulse_paper.claims.pulse_claims import (
 )
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import (
+    divergence,
     front_arrest_position,
     judge_rise_with_prestress,
     lattice_runs,
@@ -373,6 +374,37 @@ def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
     claim = judge(flagged, "claim")
     assert claim.verdict() == NONE
     assert claim.sentence_values().get("holding", []) == []
+
+
+def test_runs_that_end_before_the_transition_do_not_show_whether_it_diverges():
+    runs = pd.DataFrame({"gamma": [0.1, 0.2, 0.4, 0.8], "transition_time": [9.0, 6.0, 4.0, 3.0]})
+    runs["transition_length"] = runs["transition_time"]
+    assert divergence(runs).diverges is True
+    assert divergence(runs.assign(transition_time=[NAN, NAN, 4.0, 3.0])).diverges is None
+    assert divergence(runs.assign(transition_time=NAN)).diverges is None
+
+
+def test_a_front_that_still_runs_does_not_show_where_it_stops():
+    """In the last of four equal runs, the front has not stopped half-way."""
+    runs = pd.DataFrame({"width": [1.0, 2.0, 4.0, 4.0], "factor": 2.0, "left": -0.5})
+    runs = runs.assign(damping_ratio=0.1, release="total", gamma=0.0, end_time=10.0)
+    runs["balance_distance"] = 3.0 * runs["width"]
+    runs["last_release_distance"] = runs["balance_distance"] * [1.0, 1.0, 1.0, 0.5]
+    runs["last_release_time"] = [2.0, 4.0, 8.0, 9.9]
+    entries = {"claim": {"tolerance": 0.1, "tolerance_exponent": 0.1}}
+    given = Evidence({"open_choices": pd.DataFrame({"damping_ratio": [0.1]})}, entries, 0.02, {})
+
+    def lattices(*sweeps, where):
+        return [runs[evaluated(runs, where)]] * 3
+
+    given.lattices = lattices
+    assert front_arrest_position(given, "claim").shown.further["smallest ratio"] == 1.0
+
+
+def test_a_qualitative_claim_without_runs_is_not_measured():
+    entry = {"kind": "qualitative", "tolerance": 0.0, "sentences": ["a"]}
+    entry = fields_of_claim("all", Qualitative(decided=[]), entry, "")
+    assert with_texts(entry).measured_text() == "not measured"
 
 
 def test_a_pulse_is_undecided_without_a_steady_one_and_if_it_has_not_formed():

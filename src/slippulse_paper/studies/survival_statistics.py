@@ -48,8 +48,10 @@ def survival(fates: Sequence[Fate]) -> pd.DataFrame:
     columns = {"distance": np.concatenate([[0.0], estimate.quantiles])}
     for name, values in fractions.items():
         columns[name] = np.concatenate([[1.0], values])
-    # Where the band has no value, the previous one still holds.
-    return pd.DataFrame(columns).ffill()
+    # Where the band has no value, the previous one still holds. But if no pulse is alive, the band
+    # begins at 0.
+    curve = pd.DataFrame(columns).ffill()
+    return curve.assign(low=curve["low"].where(curve["survival"] > 0.0, 0.0))
 
 
 def death_rate(fates: Sequence[Fate], start: float) -> dict[str, float]:
