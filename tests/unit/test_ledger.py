@@ -376,6 +376,11 @@ def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
     assert claim.sentence_values().get("holding", []) == []
 
 
+def test_a_choice_at_whose_values_a_claim_holds_does_not_decide():
+    over = over_choices([estimated("total", 0.1, 0.05), estimated("total", 0.0, 0.06)])
+    assert len(over.decisive) == 1 and over.sentence_values()["changes"] == []
+
+
 def test_runs_that_end_before_the_transition_do_not_show_whether_it_diverges():
     runs = pd.DataFrame({"gamma": [0.1, 0.2, 0.4, 0.8], "transition_time": [9.0, 6.0, 4.0, 3.0]})
     runs["transition_length"] = runs["transition_time"]

@@ -68,6 +68,11 @@ class Change(NamedTuple):
     exact: bool
     size: float
 
+    @property
+    def decides(self) -> bool:
+        """True if the claim holds before the change and fails after it."""
+        return self.before.result["holds"] is True and self.after.result["holds"] is False
+
 
 def changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return all ordered pairs of combinations that differ in one choice only.
@@ -113,11 +118,7 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     decisive = []
     for largest in largest_first:
         changes_to_failure = [
-            change
-            for change in ranked
-            if change.name == largest.name
-            and change.before.result["holds"] is True
-            and change.after.result["holds"] is False
+            change for change in ranked if change.name == largest.name and change.decides
         ]
         if changes_to_failure:
             decisive.append(min(changes_to_failure, key=attrgetter("size")))
@@ -190,7 +191,7 @@ class OverChoices(Claim):
             "holding": deviations[True],
             "failing": deviations[False],
             "last": at_last_release,
-            "changes": self.decisive,
+            "changes": [change for change in self.decisive if change.decides],
             "choice_names": CHOICE_WORDS,
             "settings": settings,
             "unsure": in_doubt.claim.template_values,

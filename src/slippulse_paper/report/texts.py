@@ -21,6 +21,8 @@ from ..text.prose import without_missing
 # The keys of an erratum. The text of `alters` names what the misprint changes in the paper.
 ERRATUM = ("where", "printed", "right", "shown", "alters")
 BOUNDARY_SYMBOLS = {"displacement": r"$\Gamma=1$", "stress": r"$\Gamma=0$"}
+# The text of a line of the summary of which no number was measured.
+NO_NUMBER = "This run has no number that decides."
 # If there are more values than this, only the smallest and the largest are named.
 MAX_LISTED_VALUES = 3
 
@@ -227,7 +229,7 @@ def judged_lines(summary: Mapping, ledger: Ledger, fill: Callable[[str], str]) -
         line = Line(
             topic=entry["topic"],
             named=entry["named"],
-            text=without_missing(fill(entry["text"])),
+            text=without_missing(fill(entry["text"])) or NO_NUMBER,
             claim=worst,
             clause=fill(clause_by_verdict.get(worst.verdict, "")),
             verdicts=_first_claim_and_subjects_by_verdict(ledger, subjects),
