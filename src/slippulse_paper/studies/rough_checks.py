@@ -96,8 +96,11 @@ def parameters_of(ensemble: Sequence[Profile]) -> dict[str, Any]:
 def scenes_of(
     sweep: Mapping[str, Any], profiles: Sequence[Profile], **changed: Any
 ) -> Sequence[Scene]:
-    """Return the scenes of a sweep with these profiles, and with some keys of the sweep changed."""
-    scenes, _ = expand({**sweep, "profiles": profiles, **changed})
+    """Return the scenes of a sweep with these profiles, and with some keys of the sweep changed.
+
+    The lattice solver of the checks has the localised scheme, also if the sweep has another one.
+    """
+    scenes, _ = expand({**sweep, "profiles": profiles, "scheme": "localised", **changed})
     return scenes
 
 
