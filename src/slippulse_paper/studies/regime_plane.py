@@ -20,8 +20,11 @@ NEEDS = {"settings": ["model.damping_ratio", "model.release", "measure.still"]}
 
 GAMMAS = {"displacement": 1.0, "stress": 0.0}
 # Right levels along the border between crack and pulse without leaf springs. The border begins at
-# the point (0, 0) and ends beyond the edge of the plane.
+# the point (0, 0) and ends beyond the edge of the plane. If it does not reach the left edge, it
+# continues almost to the upper one.
 BORDER_RIGHT_LEVELS = np.linspace(0.0, 0.15, 31)[1:]
+LONG_BORDER_RIGHT_LEVELS = np.linspace(0.0, 0.99, 100)[1:]
+LEFT_EDGE = -1.0
 # Boundary, left level and right level of each velocity profile.
 PROFILES = [
     ("displacement", 0.5, 0.5),
@@ -115,13 +118,17 @@ def corners_of_pulse_area(damping_ratio: float, release: str, still_fraction: fl
     still_fraction : a rupture is a pulse if its velocity at x = 0 falls below this fraction of its
         largest velocity
     """
-    # A rupture is a pulse up to this ratio of the right level to the size of the left one.
-    level_ratios = largest_pulse_ratio(BORDER_RIGHT_LEVELS, damping_ratio, release, still_fraction)
-    left_levels = -BORDER_RIGHT_LEVELS / level_ratios
-    border = np.column_stack([left_levels, BORDER_RIGHT_LEVELS])
+    for right_levels in (BORDER_RIGHT_LEVELS, LONG_BORDER_RIGHT_LEVELS):
+        # A rupture is a pulse up to this ratio of the right level to the size of the left one.
+        level_ratios = largest_pulse_ratio(right_levels, damping_ratio, release, still_fraction)
+        left_levels = -right_levels / level_ratios
+        corners = [(0.0, 0.0), *zip(left_levels, right_levels, strict=True)]
+        if left_levels[-1] < LEFT_EDGE:
+            break
+    else:
+        corners.append((LEFT_EDGE, right_levels[-1]))
     # From its end the area reaches down to the axis on which the right level is 0.
-    end_on_axis = (left_levels[-1], 0.0)
-    return np.vstack([[(0.0, 0.0)], border, [end_on_axis]])
+    return np.array([*corners, (corners[-1][0], 0.0)])
 
 
 def outline(
