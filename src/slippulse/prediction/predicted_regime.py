@@ -122,8 +122,8 @@ def largest_pulse_ratio(
     front into p, at a distance e from the nucleation point, moves the front into -n to the distance
     (p/n) e, where the integral of the pre-stress between the two positions is 0. With r = p/n and
     the speed v of the front into p, the slip velocity at the nucleation point therefore tends to
-    r/(1 + 1/v + 2 r) times the largest one. A pulse needs less than ``still_fraction``. As the factor
-    is always below 1/2, the result is infinite if ``still_fraction`` is 1/2 or more.
+    r/(1 + 1/v + 2 r) times the largest one. A pulse needs less than ``still_fraction``. The factor
+    is always below 1/2, so the result is infinite if ``still_fraction`` is 1/2 or more.
 
     level : the positive level p, a number or an array
     """
