@@ -258,7 +258,29 @@ def test_one_value_of_a_parameter_is_enough_to_draw_the_influence_of_damping(dra
 def test_ensembles_in_which_no_pulse_dies_are_drawn(draw):
     drawn = draw("study_rough_prestress")
     without_deaths = drawn.table.assign(deaths=drawn.table["deaths"] * 0.0)
-    drawn.module.draw(without_deaths).draw_without_rendering()
+    figure = drawn.module.draw(without_deaths)
+    figure.draw_without_rendering()
+    assert "no pulse has died" in [text.get_text() for text in figure.axes[0].texts]
+
+
+def test_the_survival_of_pulses_that_all_die_is_within_the_axes(draw):
+    drawn = draw("study_rough_prestress")
+    dying = drawn.table.assign(survival=0.1 * drawn.table["survival"])
+    assert drawn.module.draw(dying).axes[0].get_ylim()[0] == 0.0
+
+
+def test_the_misfits_of_a_bad_fit_are_within_the_axes(draw):
+    drawn = draw("study_published_figure")
+    bad = drawn.table.assign(pull=100.0 * drawn.table["pull"])
+    low, high = drawn.module.draw(bad).axes[-1].get_ylim()
+    pulls = bad[bad["part"] == "best"]["pull"] if "part" in bad else bad["pull"]
+    assert low < pulls.min() and pulls.max() < high
+
+
+def test_a_single_transition_is_not_hidden_by_an_inset(draw):
+    drawn = draw("fig05_scaling")
+    axes = drawn.module.draw(drawn.table.groupby("boundary", sort=False).head(1)).axes[0]
+    assert np.divide(*axes.get_xlim()[::-1]) >= 9.9
 
 
 def test_errors_without_any_sound_run_keep_their_entries_in_the_legend(draw):

@@ -127,7 +127,10 @@ def _draw_pulls(axes: Axes, best_fits: Mapping[str, pd.DataFrame]) -> None:
         labels.append(READING_LABELS.get(name, rf"edge, $t = {time}$"))
     turned: Look = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
     axes.set_xticks(np.arange(len(labels)), labels, **turned)
-    axes.set(ylim=(-2.4, 2.4), ylabel="(fit $-$ drawn) / reading error")
+    largest = max(np.abs(rows["pull"]).max() for rows in best_fits.values())
+    # A bad fit needs larger axes.
+    end = max(2.4, 1.2 * largest)
+    axes.set(ylim=(-end, end), ylabel="(fit $-$ drawn) / reading error")
     axes.legend(title="released by", loc="upper right", ncols=2)
 
 

@@ -119,9 +119,12 @@ def draw_survival(axes: Axes, ensemble: Ensemble) -> None:
 def finish_survival(axes: Axes, largest_distance: float) -> None:
     """Set the axes of panel a; pulses are followed up to ``largest_distance``."""
     axes.set(xlabel="distance $x/H$", ylabel="fraction of pulses alive", title=r"$\Gamma = 1$")
-    axes.set(ylim=(0.6, 1.01), xlim=(0.0, largest_distance))
+    lowest = min((np.min(line.get_ydata()) for line in axes.lines), default=1.0)
+    axes.set(ylim=(0.6 if lowest > 0.6 else 0.0, 1.01), xlim=(0.0, largest_distance))
     # The panel is empty if no pulse has died.
-    if axes.lines:
+    if not axes.lines:
+        axes.text(0.5, 0.5, "no pulse has died", ha="center", transform=axes.transAxes)
+    else:
         axes.legend(
             title=LEGEND_TITLE, loc="lower left", fontsize=SMALL_TEXT, title_fontsize=SMALL_TEXT
         )
