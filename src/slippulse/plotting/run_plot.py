@@ -109,7 +109,7 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     else:
         space_time.draw_edges(map_axes, rows_by_role, rows_by_role["end"]["time"].iloc[0])
     if np.isfinite(run["release_time"]).any():
-        map_axes.legend(loc="upper left")
+        space_time.add_map_legend(map_axes)
     final_slip = rows_by_role["profile"]
     slip_axes.plot(final_slip["value"], final_slip["position"], color=BLUE)
     slip_axes.set_xlabel(with_unit(r"slip $u$", rows_by_role, "slip"))

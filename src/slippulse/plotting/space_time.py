@@ -255,6 +255,18 @@ def draw_map(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
 
 
+def add_map_legend(axes: Axes) -> None:
+    """Add a legend to the map: below a rupture that runs mainly to the left, else above.
+
+    There the map is free at early times. If the legend still covers a part of the rupture, its pale
+    ground keeps it readable.
+    """
+    lowest, highest = axes.get_ylim()
+    runs_to_the_left = -lowest > 1.2 * highest
+    look: Look = {"frameon": True, "edgecolor": "none"}
+    axes.legend(loc="lower left" if runs_to_the_left else "upper left", **look)
+
+
 def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     """Draw one map of slip velocity above x = 0 and another one below.
 
