@@ -189,7 +189,7 @@ def test_the_page_has_old_beside_new(tmp_path, capsys):
     assert {image["width"] for image in outline.all("img")} == {"1000"}
     for shown in ("model.release", "✓ reproduced", "× not reproduced", "New: not made"):
         assert shown in text.replace("Old: not made", "New: not made"), shown
-    assert text.count("The numbers drawn are equal.") == 1
+    assert text.count("The old and the new figure show the same numbers.") == 1
     assert "gamma 0.3 (old: gamma 0.65)" in text and "altered run" in text
     numbers = pd.read_csv(here / "compare.csv")
     assert numbers.set_index("quantity").loc["speed", "old_uncertainty"] == 0.01
