@@ -240,18 +240,20 @@ class Profile(Block):
     )
     bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of levels: points of the pre-stress. The pre-stress is linear between the points, "
+        "instead of `left` and `right`: points of the pre-stress. The pre-stress is linear between the points, "
         "constant outside, and jumps at a position that appears twice [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: CSV or netCDF file with points of the pre-stress; its path is relative "
+        "instead of `left` and `right`: CSV or netCDF file with points of the pre-stress; its path is relative "
         "to the folder of the overlay",
         None,
     )
     rough: Rough | None = key(
-        "instead of levels: parameters of a random pre-stress, explained below", None, ROUGH
+        "instead of `left` and `right`: parameters of a random pre-stress, explained below",
+        None,
+        ROUGH,
     )
 
     @model_validator(mode="after")
@@ -311,7 +313,7 @@ class Beyond(Block):
         "position, other than 0, beyond which the pre-stress has the second level [H]"
     )
     levels: Distinct[float] = key(
-        "values of the second level, combined with all values of the other lists [S]"
+        "values of the second level. Each value is combined with all values of the other lists [S]"
     )
 
 
