@@ -240,14 +240,14 @@ class Profile(Block):
     )
     bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of `left` and `right`: points of the pre-stress. The pre-stress is linear between the points, "
-        "constant outside, and jumps at a position that appears twice [H, S]",
+        "instead of `left` and `right`: points of the pre-stress. The pre-stress is linear between "
+        "the points, constant outside, and jumps at a position that appears twice [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of `left` and `right`: CSV or netCDF file with points of the pre-stress; its path is relative "
-        "to the folder of the overlay",
+        "instead of `left` and `right`: CSV or netCDF file with points of the pre-stress. Its path "
+        "is relative to the folder of the overlay",
         None,
     )
     rough: Rough | None = key(
