@@ -76,7 +76,16 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     ratio_axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${length}$ / formula")
     # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
     are_rising = boundary == "displacement"
-    ratio_axes.legend(loc="upper left" if are_rising else "upper right", fontsize=SMALL_TEXT)
+    # One row of entries above the lines leaves every entry clear of them.
+    ratio_axes.legend(
+        loc="upper left" if are_rising else "upper right",
+        fontsize=SMALL_TEXT,
+        ncols=LINE_COUNT,
+        columnspacing=1.0,
+        handlelength=1.2,
+    )
+    bottom, top = ratio_axes.get_ylim()
+    ratio_axes.set_ylim(bottom, top + 0.15 * (top - bottom))
     draw_prestress_inset(length_axes, runs, level_column)
     length_axes.set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
