@@ -28,7 +28,9 @@ def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
 
 
 def test_the_overlay_of_a_stress_profile_is_that_of_its_page(project):
-    block = re.search(r"^    scenes:\n(?:     .*\n)+", README.read_text(encoding="utf-8"), re.MULTILINE)
+    block = re.search(
+        r"^    scenes:\n(?:     .*\n)+", README.read_text(encoding="utf-8"), re.MULTILINE
+    )
     page = (project / "docs/stress_profile.md").read_text(encoding="utf-8")
     overlay = re.search(r"^```yaml\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
     assert block and overlay
