@@ -312,10 +312,10 @@ def result_options(make_options: Mapping[str, str]) -> dict[str, str]:
 
 
 def record_run(make_options: Mapping[str, str], targets: list[str]) -> None:
-    """Write the options and targets of a run to a file, so that `verify` can use them.
+    """Write the options that change results, and the targets, to a file, which `verify` reads.
 
-    Of the targets, only "everything" is recorded. After a run with other targets, `verify` examines
-    those that are made by default.
+    Of the targets, only "everything" is recorded. After a run of one figure, for example, `verify`
+    still examines all results that are made by default.
     """
     recorded_targets = ["everything"] if "everything" in targets else []
     last_run = {"options": result_options(make_options), "targets": recorded_targets}
@@ -368,6 +368,7 @@ def verify(make_options: Mapping[str, str]) -> int:
 
 def rulegraph(make_options: Mapping[str, str]) -> int:
     """Print the graph of the rules in the mermaid format, and return the exit code."""
+    # A figure and the verdicts need the main rules. The graph of all rules is hard to read.
     targets = targets_of(make_options) or [
         "results/figures/fig05_scaling.png",
         "results/claims.json",

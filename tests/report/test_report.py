@@ -6,6 +6,7 @@ from base64 import b64decode
 from dataclasses import replace
 from io import BytesIO
 
+import pandas as pd
 import pytest
 import yaml
 from PIL import Image
@@ -15,6 +16,7 @@ from slippulse.plotting.style import FONT_FAMILY
 from slippulse_paper.claims.ledger import with_texts
 from slippulse_paper.configuration.read import read_config
 from slippulse_paper.report.manuscript import DOCUMENTS, execute, names_for
+from slippulse_paper.report.report_tables import STUDIED_QUANTITIES, grid_studies
 from slippulse_paper.report.texts import read_captions
 from slippulse_paper.steps import write_report
 from slippulse_paper.steps.inputs import LoadedInputs
@@ -179,3 +181,20 @@ def test_a_hostile_text_of_an_overlay_is_only_shown(make_inputs, build, shipped)
     for page in [page for pdf in built.pdfs for page in pdf.pages]:
         links = [note.get_object().get("/A", {}) for note in page.get("/Annots", [])]
         assert not any("javascript" in str(link).lower() for link in links)
+
+
+@pytest.mark.parametrize("known", [0, 1, 2])
+def test_the_table_of_grid_studies_counts_runs_with_a_known_uncertainty(known):
+    rows = [
+        {
+            "quantity": quantity,
+            "value": 1.0,
+            "uncertainty": 0.01 if run < known else float("nan"),
+            "observed_order": 1.0,
+        }
+        for _, quantity, _ in STUDIED_QUANTITIES
+        for run in range(2)
+    ]
+    studies = {f"uncertainties/{name}": pd.DataFrame(rows) for name, _, _ in STUDIED_QUANTITIES}
+    cells = [cell.strip() for cell in str(grid_studies(studies)).splitlines()[-1].split("|")]
+    assert str(known) in cells

@@ -147,8 +147,8 @@ SETTINGS = {
     "fields: 1; allowed: true": {"fields": 1},
 }
 SAMPLES = {
-    "samples.times: not increasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
-    "not increasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
+    "samples.times: decreasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
+    "decreasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
     "samples: times and positions; allowed: one-dimensional arrays": ([0.0, 1.0], 0.0),
 }

@@ -37,7 +37,7 @@ def tree(folder: Path, **changes) -> Path:
     return folder
 
 
-NAN = math.nan
+NAN, INF = math.nan, math.inf
 ELASTIC, DRAFT = CONFIG | {"model": {"release": "elastic"}}, CONFIG | {"preset": "draft"}
 DIFFERENT = [
     # The measured numbers are compared, whatever an older study has.
@@ -54,6 +54,10 @@ DIFFERENT = [
     ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
     ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
     ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one folder only: width_at_end"),
+    # An infinite number agrees only with an equal one.
+    ({"speed": INF}, {"speed": INF}, "1 of 1 numbers agree"),
+    ({"speed": INF}, {}, "speed: inf against 1; allowed: a difference of 0"),
+    ({}, {"speed": INF}, "speed: 1 against inf"),
     # Numbers agree within both uncertainties, at any preset.
     *(({}, other, "1 of 1 numbers agree") for other in ({}, {"speed": 1.015}, {"config": DRAFT})),
 ]
@@ -113,6 +117,17 @@ def test_runs_are_joined_by_their_parameters_in_any_order(tmp_path):
     altered = result.numbers[result.numbers["outcome"] == "altered run"]
     assert {*altered["run"]} == {"left 0.1 (old: left 0.4)"}
     assert altered.set_index("quantity").loc["speed", ["new", "old"]].tolist() == [0.1, 0.4]
+
+
+def test_runs_are_joined_if_one_table_has_only_whole_numbers(tmp_path):
+    here, other = tree(tmp_path / "here"), tree(tmp_path / "other")
+    table_of(here, [{"left": left} for left in (1, 2)])
+    table_of(other, [{"left": left} for left in (0.5, 1, 2)])
+    result = compare(here, other)
+    runs = result.runs[0]
+    assert (runs.same_count, runs.only_new, runs.only_old) == (2, [], ["left 0.5"])
+    # The text of a run has no old value that is equal to the new one.
+    assert {*result.numbers["run"]} == {"left 1", "left 2"}
 
 
 def test_runs_of_one_side_are_listed(tmp_path, capsys):

@@ -142,11 +142,12 @@ def fit_front(run: AnyRun, window: float, side: str = "right") -> Line:
     if is_in_window.sum() < MIN_FITTED_BLOCKS or not is_known_to_end(run, side):
         return NO_LINE
     times, distances = times[is_in_window], distances[is_in_window]
-    # A wait is a pause if it is long compared with the total and with the mean of all waits.
+    # The front passes a block when this block and all blocks before it have been released.
     waits = np.diff(np.maximum.accumulate(times))
+    # A wait is a pause if it exceeds a fraction of the total, and a multiple of the mean wait.
     shortest_pause = max(PAUSE_FRACTION, PAUSE_IN_MEAN_WAITS / times.size) * np.sum(waits)
     pauses = np.flatnonzero(waits > shortest_pause)
-    # A wait ends with the release of the next block.
+    # The block whose release ends the last pause; 0 if there is no pause.
     after_pause = int(pauses[-1]) + 1 if pauses.size else 0
     if 0 < after_pause <= times.size - MIN_FITTED_BLOCKS:
         line = fit_line(times[after_pause:], distances[after_pause:])

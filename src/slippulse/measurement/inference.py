@@ -37,8 +37,8 @@ def interpolate_fits(profile: pd.DataFrame) -> pd.DataFrame:
     values = CubicSpline(studied_log_ratios, studied.to_numpy())(log_ratios)
     fits = pd.DataFrame(values, columns=studied.columns)
     # Several readings share a part of their errors, and so their pulls are correlated. Chi-square
-    # is the sum of the squares of independent combinations of the pulls, which the table also has.
-    # Readings of weight 0 were not fitted.
+    # is the sum of the squares of independent combinations of the pulls, which are the columns with
+    # INDEPENDENT_PREFIX. Readings of weight 0 were not fitted.
     fitted_readings = profile.loc[profile["weight"] > 0.0, "reading"].unique()
     fitted_pulls = fits[[f"{INDEPENDENT_PREFIX}{name}" for name in fitted_readings]]
     chi_square = (fitted_pulls**2).sum(axis=1)

@@ -75,8 +75,9 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
     # "beyond" has the level beyond the outermost step on the right.
     if not (run["left"] < 0.0 and run["right"] == 0.0 and run["beyond"] == 0.0):
         names.add("largest_velocity")
-    # The left front becomes slower and slower. The lattice holds it up close to its final position,
-    # and also if the damping is too weak to remove oscillations of the lattice.
+    # The left front becomes slower and slower. Its time converges only if the lattice has not held
+    # it up ("resolved"), if it is not yet close to its final position, and if the damping removes
+    # the oscillations of the lattice.
     if run["boundary"] == "stress" and (
         run.get("transition_state") != "resolved"
         or fraction > MAX_COVERED_FRACTION
@@ -87,21 +88,24 @@ def _excluded_numbers(run: Mapping, fraction: float) -> set[str]:
 
 
 def fast_sides(run: Mapping) -> set[str]:
-    """Return the sides on which the front has crossed only pre-stress of at least MIN_PRESTRESS.
+    """Return the sides on which the front was fast: its path has no pre-stress below MIN_PRESTRESS.
 
-    If the pre-stress is a table of points, its lowest crossed value is one of the measured numbers.
-    Otherwise, the profile is evaluated up to the end of the path. A side on which no front ran, or
-    whose front has an unknown path, is not among the returned sides.
+    In a lower pre-stress the front is hardly faster than the waves. A side on which no front ran,
+    or whose front has an unknown path, is not among the returned sides.
+
+    run : the row of a run in the measured table
     """
+    # If the pre-stress is a table of points, its lowest value on the path has been measured.
     if "lowest_prestress_left" in run:
         lowest = {side: run[f"lowest_prestress_{side}"] for side in ("left", "right")}
         # One of them is NaN if no front ran on this side. Both are NaN if the run has no table, but
         # other runs of the sweep have one.
         if any(map(math.isfinite, lowest.values())):
             return {side for side, tau in lowest.items() if tau >= MIN_PRESTRESS}
+    # Otherwise the profile is evaluated up to the final position of the front, which follows from
+    # the straight line that was fitted to its path.
     sides = set()
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        # The position of the front at the end, by the straight line that was fitted to its path.
         speed, intercept = run[f"front_speed_{side}"], run[f"front_intercept_{side}"]
         front = sign * (intercept + speed * run["end_time"])
         if math.isfinite(front):
@@ -116,8 +120,9 @@ def judge_promises(
 ) -> pd.DataFrame:
     """Add to a grid study whether each of its numbers keeps the promised uncertainty.
 
-    study : the grid study, with one row for each number of each run
-    measured : the measured table at the finest spacing
+    study : the grid study, with one row for each number (quantity) of each run (point, counted
+        from 0)
+    measured : the measured table at the finest spacing, with the runs in this order
     promise : largest relative uncertainty; NaN for a user-defined spacing, which promises nothing
     fraction : under a stress boundary, the transition is measured when the left front has covered
         this fraction of the balance distance
@@ -143,7 +148,9 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
 
     Of each run that missed it, the worst number is reported with its relative uncertainty.
 
-    study : a grid study with the columns that `judge_promises` adds
+    study : a grid study with the columns that `judge_promises` adds: one row for each number
+        (column quantity) of each run (column point). It has an empty text in the column kept if
+        nothing was promised for this number.
     """
     if not math.isfinite(promise):
         return "the block spacing is user-defined, so no accuracy is promised"

@@ -130,8 +130,7 @@ def sliding_stretches(velocity: np.ndarray) -> list[slice]:
 
     The last stretch is the leading pulse. Stretches that are much slower than it are left out.
     """
-    # Between neighbouring blocks, sliding begins and ends in turns. Each stretch has the number of
-    # its first block, and the number of the first block after it.
+    # Numbers of blocks, in turns: the first block of a stretch, and the first block after it.
     changes = np.flatnonzero(np.diff(velocity > 0.0, prepend=False, append=False)).tolist()
     stretches = [slice(first, end) for first, end in zip(changes[0::2], changes[1::2], strict=True)]
     if not stretches:

@@ -102,8 +102,9 @@ def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
 def _is_arrested(run: AnyRun, largest: float, still_fraction: float) -> bool:
     """Return True if the rupture is nearly at rest at the end, or released its last block early.
 
-    Early means before the last tenth of the duration. Nearly at rest means that the largest
-    velocity at the end is at most ``still_fraction`` times the largest one of the whole run.
+    Early means before the last tenth of the duration: no front has moved since then. Nearly at rest
+    means that the largest velocity at the end is at most ``still_fraction`` times the largest one
+    of the whole run.
 
     largest : the largest velocity at the end
     """

@@ -13,7 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from ..data.points import AnyRun
-from ..model.prestress import prestress_from
+from ..model.prestress import Prestress, prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
@@ -68,6 +68,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     attributes = DEFAULTS_OF_EXTRA_TERMS | run.attrs
     attributes["friction"] = json.dumps(read_recorded_law(run.attrs))
     row = {name: attributes[name] for name in PARAMETERS}
+    # Further numbers that describe the pre-stress.
     row |= profile_columns(run, settings["front_window"])
     # Fronts, transition and trailing edge.
     for side in ("right", "left"):
@@ -99,6 +100,7 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
     if "sample_velocity" in run and run["sample_position"].size > 1:
         row |= classify_regime(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
+            # Changes of the pulse where the pre-stress is constant, far from the nucleation.
             row |= far_field(run)
     return row, pulse
 
@@ -196,6 +198,7 @@ def half_width(run: AnyRun, pulse: LeadingPulse) -> float:
     """
     if np.isnan(pulse.peak_velocity):
         return np.nan
+    # Positions relative to the front, and slip velocities, of the blocks on the right.
     fields = comoving(run, pulse)
     xi, velocity = fields["xi"], fields["slip_velocity"]
     # The block that is nearest to the peak.
@@ -250,6 +253,16 @@ def sliding_at_once(run: AnyRun) -> float:
     return float(np.max(released_count - stuck_count))
 
 
+def _start_of_far_field(profile: Prestress, width: float) -> float:
+    """Return the position to the right of which there are no Gaussians, steps and points.
+
+    width : standard deviation of the Gaussian at x = 0
+    """
+    ends = [centre + GAUSSIAN_END_IN_WIDTHS * bump_width for centre, _, bump_width in profile.bumps]
+    ends += [position for position, _ in (*profile.steps, *profile.points)]
+    return max([GAUSSIAN_END_IN_WIDTHS * width, *ends])
+
+
 def far_field(run: AnyRun) -> dict[str, float]:
     """Measure how the pulse on the right changes from an early time to the end of a run.
 
@@ -263,44 +276,41 @@ def far_field(run: AnyRun) -> dict[str, float]:
         width: the largest strain there at the end of the run, divided by the largest strain
         anywhere in the far field at that time
 
-    All are NaN if nothing slid in the far field at the early time. profile_change is NaN if the
-    sampled far field is shorter than the distance that waves run between the two times.
-    strain_left is NaN if no position near the entry is sampled, or if the final strain is 0.
+    All are NaN if nothing slid in the far field at the early time, or if too few positions are
+    sampled there. profile_change is NaN if the sampled far field is shorter than the distance that
+    waves run between the two times. strain_left is NaN if no position near the entry is sampled, or
+    if the final strain is 0.
     """
     profile = prestress_from(run.attrs)
     # If there is no Gaussian, its width is None. The unit of length takes its place.
     width = profile.width or 1.0
-    ends = [centre + GAUSSIAN_END_IN_WIDTHS * bump for centre, _, bump in profile.bumps]
-    ends += [position for position, _ in (*profile.steps, *profile.points)]
-    far_start = max([GAUSSIAN_END_IN_WIDTHS * width, *ends])
+    far_start = _start_of_far_field(profile, width)
     times = np.asarray(run["sample_time"])
     # Sampled positions may be in any order, and may repeat.
     x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)
     # Index of the early time. The index of the final time is -1.
     early = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
-    velocity = np.asarray(run["sample_velocity"])[:, order]
-    slip = np.asarray(run["sample_slip"])[:, order]
+    early_velocity, final_velocity = np.asarray(run["sample_velocity"])[[early, -1]][:, order]
+    early_slip, final_slip = np.asarray(run["sample_slip"])[[early, -1]][:, order]
     is_far = x >= far_start
-    early_peak = np.max(velocity[early][is_far], initial=0.0)
+    early_peak = np.max(early_velocity[is_far], initial=0.0)
     if np.count_nonzero(is_far) < MIN_FAR_SAMPLES or not early_peak > 0.0:
         return {"profile_change": np.nan, "energy_change": np.nan, "strain_left": np.nan}
-    far_x, strain = x[is_far], np.gradient(slip[:, is_far], x[is_far], axis=1)
-
-    def energy(sample: int) -> float:
-        """Return the kinetic and strain energy in the far field at a sampled time, by its index."""
-        density = 0.5 * (velocity[sample][is_far] ** 2 + strain[sample] ** 2)
-        return np.trapezoid(density, far_x)
-
-    early_energy, final_energy = energy(early), energy(-1)
+    far_x = x[is_far]
+    early_strain = np.gradient(early_slip[is_far], far_x)
+    final_strain = np.gradient(final_slip[is_far], far_x)
+    # The sum of kinetic and strain energy.
+    early_energy = np.trapezoid(0.5 * (early_velocity[is_far] ** 2 + early_strain**2), far_x)
+    final_energy = np.trapezoid(0.5 * (final_velocity[is_far] ** 2 + final_strain**2), far_x)
     # A wave travels this distance from the early time to the end, because the wave speed is 1. Each
     # early velocity is compared with the final velocity at this distance ahead, if it is sampled.
     travelled = float(times[-1] - times[early])
     is_compared = is_far & (x + travelled <= x[-1])
-    final_velocity = np.interp(x[is_compared] + travelled, x, velocity[-1])
-    changes = np.abs(final_velocity - velocity[early][is_compared])
+    velocity_ahead = np.interp(x[is_compared] + travelled, x, final_velocity)
+    changes = np.abs(velocity_ahead - early_velocity[is_compared])
     largest_change = np.max(changes) if changes.size else np.nan
-    final_strain = np.abs(strain[-1])
-    entry_strain, largest_strain = final_strain[far_x <= far_start + width], np.max(final_strain)
+    entry_strain = np.abs(final_strain[far_x <= far_start + width])
+    largest_strain = np.max(np.abs(final_strain))
     strain_left = np.nan
     if entry_strain.size and largest_strain > 0.0:
         strain_left = float(np.max(entry_strain) / largest_strain)

@@ -57,7 +57,7 @@ def between_fronts(run: AnyRun, time: float) -> float:
 def slip_time(run: AnyRun, slip: float) -> float:
     """Return the time at which the sampled position nearest to x = 0 reaches a slip.
 
-    NaN if it never does, or if the run has no samples.
+    NaN if it never does, or already at the first sample, or if the run has no samples.
     """
     if "sample_slip" not in run:
         return np.nan

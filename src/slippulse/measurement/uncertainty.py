@@ -40,6 +40,7 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
     (largest value - smallest value)/(c_2^p - 1) with the lowest p of this range, which gives the
     largest uncertainty. It is NaN if a value is missing.
     """
+    c_1, c_2 = factors
     finest, middle, coarsest = (float(value) for value in values)
     if not all(map(math.isfinite, (finest, middle, coarsest))):
         return GridStudy(finest, extrapolated=finest, observed_order=np.nan, uncertainty=np.nan)
@@ -48,17 +49,18 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
 
     def mismatch(order: float) -> float:
         """Return 0 if the two changes have the ratio (c_1^p - 1)/(c_2^p - 1) of this order p."""
-        middle_power, coarsest_power = factors[0] ** order - 1.0, factors[1] ** order - 1.0
-        return coarsest_change * middle_power - middle_change * coarsest_power
+        return coarsest_change * (c_1**order - 1.0) - middle_change * (c_2**order - 1.0)
 
+    # No order fits if the values do not rise or fall from spacing to spacing, apart from rounding,
+    # or if the mismatch has the same sign at both ends of the range of orders.
     lowest, highest = ORDER_RANGE
     are_equal = spread <= EQUALITY_TOLERANCE * max(1.0, abs(finest))
     is_monotonic = middle_change * coarsest_change > 0.0
     if are_equal or not is_monotonic or mismatch(lowest) * mismatch(highest) > 0.0:
-        uncertainty = spread / (factors[1] ** lowest - 1.0)
+        uncertainty = spread / (c_2**lowest - 1.0)
         return GridStudy(finest, finest, observed_order=np.nan, uncertainty=uncertainty)
     order = float(root_between(mismatch, lowest, highest))
-    extrapolated = finest - middle_change / (factors[0] ** order - 1.0)
+    extrapolated = finest - middle_change / (c_1**order - 1.0)
     return GridStudy(finest, extrapolated, order, abs(finest - extrapolated))
 
 

@@ -125,8 +125,9 @@ def _balance_position(prestress: Prestress) -> float:
 
     `prestress_balance_position` names the conditions and errors. Results are cached.
     """
-    # On the right the level is 0, so that integrals to infinity end at this distance.
-    distance = _distance_of_levels(prestress)
+    # Beyond this distance the pre-stress is constant. It must be 0 on the right, so that integrals
+    # to infinity end there.
+    distance = _distance_of_constant_levels(prestress)
     right = float(prestress.level(distance))
     allowed = "0, since otherwise the balance integral is not finite"
     check_that(right == 0.0, "prestress.right", right, allowed)
@@ -149,7 +150,7 @@ def _check_far_left_level(level: float) -> None:
     check_that(level < 0.0, "prestress.left", level, allowed)
 
 
-def _distance_of_levels(prestress: Prestress) -> float:
+def _distance_of_constant_levels(prestress: Prestress) -> float:
     """Return a distance from x = 0 beyond which the profile equals its level on either side.
 
     The values are equal to machine precision, because at 40 widths a Gaussian has no digits left.
@@ -229,6 +230,7 @@ def _integral_from(
 
     integral_from_right_end : the integral from the right end of the part to infinity
     """
+    # The background and the Gaussian at x = 0, and then the other Gaussians.
     within_part = _integral_in_interval(prestress, part.interval, position, part.right)
     for centre, amplitude, width in prestress.bumps:
         within_part += amplitude * _gaussian_area(position, part.right, centre, width)
@@ -236,10 +238,10 @@ def _integral_from(
 
 
 def _parts_leftwards(prestress: Prestress, start: float) -> Iterator[_Part]:
-    """Yield parts of the intervals to the left of ``start``, from right to left.
+    """Yield short parts of the profile to the left of ``start``, from right to left.
 
-    Intervals are divided where the background changes its sign, and into short parts near
-    Gaussians. The pre-stress then changes its sign at most once within each part.
+    The intervals on which the background is linear are divided where it changes its sign, and into
+    short parts near Gaussians. The pre-stress then changes its sign at most once within each part.
     """
     positions: list[float] = []
     for centre, width in prestress.gaussians:

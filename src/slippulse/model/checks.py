@@ -49,7 +49,7 @@ def check_that(holds: bool, key: str, value: object, allowed: str) -> None:
         raise refusal(key, value, allowed)
 
 
-def first_true(mask: np.ndarray) -> int | None:
+def index_of_first_true(mask: np.ndarray) -> int | None:
     """Return the index of the first element that is True; None if there is none."""
     return int(np.argmax(mask)) if np.any(mask) else None
 

@@ -165,7 +165,7 @@ def _bound_scene_reach(scene: Scene) -> float:
     )
     # The width is None if there is no Gaussian at x = 0.
     end_of_peak = GAUSSIAN_END_IN_WIDTHS * (profile.width or 0.0)
-    # The bound may be too large: the sum is at least as large as each of these distances.
+    # A sum instead of the largest of these distances is safe, and an upper bound may be too large.
     start = max(end_of_bumps, profile.nucleation_reach) + end_of_peak
     return bound_front_reach(profile, start, scene.duration, partial(_bound_speeds, scene))
 
@@ -176,7 +176,8 @@ def _bound_speeds(scene: Scene, levels: np.ndarray) -> np.ndarray:
     The bounds are larger than the exact speeds at any damping and under both release rules.
     """
     # A table can have a few high values, so that each level has its own bound. Other profiles have
-    # few levels, and the bound at the highest one is used for all.
+    # few levels, and the bound at the highest one is used for all. MAX_LEVEL is slightly below 1,
+    # the level at which the speed would be infinite.
     level = np.clip(levels if scene.prestress.points else np.max(levels), 0.0, MAX_LEVEL)
     # Without damping, the front speed is 1/sqrt(1 - tau^2).
     speed = SPEED_MARGIN / np.sqrt((1.0 - level) * (1.0 + level))

@@ -71,7 +71,7 @@ class LayerMaterial:
         is_higher = self.static_friction > self.kinetic_friction
         check_that(is_higher, "static_friction", self.static_friction, allowed)
         check_choice("top", self.top, tuple(BOUNDARY_OF_TOP))
-        self._set_second_modulus()
+        self._convert_lame_or_poisson()
         # Numbers that are far too large or too small for a material overflow in the scales.
         try:
             are_usable = all(math.isfinite(scale) and scale > 0.0 for scale in self.scales)
@@ -79,7 +79,7 @@ class LayerMaterial:
             are_usable = False
         check_that(are_usable, "layer", self.mapping(), "numbers near those of a material")
 
-    def _set_second_modulus(self) -> None:
+    def _convert_lame_or_poisson(self) -> None:
         """Convert ``lame_parameter`` or ``poisson_ratio`` to a float, whichever is given.
 
         Raises ValueError unless exactly one of them is given, and is within its range.
@@ -198,6 +198,7 @@ class LayerMaterial:
         ----------
         values : float or array
         quantity : str
+            As in `convert_to_si`.
 
         Returns
         -------

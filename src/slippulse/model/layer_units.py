@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import as_numbers, check_number, check_that, first_true, short_repr
+from .checks import as_numbers, check_number, check_that, index_of_first_true, short_repr
 from .layer_material import LayerMaterial
 from .prestress import Prestress
 from .samples import Samples
@@ -463,7 +463,7 @@ def _positions_and_stresses(pair: Any) -> tuple[np.ndarray, np.ndarray]:
     are_valid = have_equal_shapes and positions.size >= 2
     allowed = "two or more positions, and as many stresses"
     check_that(are_valid, "prestress_in_pascal", (positions.shape, stresses.shape), allowed)
-    before = first_true(np.diff(positions) < 0.0)
+    before = index_of_first_true(np.diff(positions) < 0.0)
     if before is not None:
         # The position in the row after ``before`` is lower. Rows are counted from 1 in messages.
         wrong = f"position {positions[before + 1]:.10g} m in row {before + 2}"

@@ -20,7 +20,6 @@ import numpy as np
 from .checks import as_positions, check_number, check_that, short_repr
 from .prestress_parts import (
     LEVEL_RANGE,
-    PART_RANGES,
     check_order,
     convert_column,
     convert_part,
@@ -114,7 +113,7 @@ class Prestress(ExplainsRemovedNames):
                 continue
             check_number(f"prestress.{name}", getattr(self, name), **bounds)
             object.__setattr__(self, name, float(getattr(self, name)))
-        for name in PART_RANGES:
+        for name in ("steps", "bumps"):
             object.__setattr__(self, name, convert_part(name, getattr(self, name)))
         object.__setattr__(self, "points", convert_points(self.points))
         # A step at x = 0 is the difference of left and right.
@@ -320,9 +319,10 @@ class Prestress(ExplainsRemovedNames):
     @property
     def symmetric(self) -> bool:
         """True if tau(-x) = tau(x), so that it is enough to simulate half of the lattice."""
-        # The first number of a step is its position, and that of a bump its centre.
-        parts = {*self.steps, *self.bumps}
-        mirrored_parts = {(-position, *others) for position, *others in parts}
+        # The first number of a step is its position, and that of a bump its centre. Lists instead
+        # of sets count equal bumps, which are added to each other.
+        parts = sorted([*self.steps, *self.bumps])
+        mirrored_parts = sorted((-position, *others) for position, *others in parts)
         return self.left == self.right and parts == mirrored_parts and self._symmetric_table
 
     @cached_property
@@ -377,6 +377,7 @@ class Prestress(ExplainsRemovedNames):
                 if left < right:
                     intervals.append(Interval(left, right, left_value, right_value))
             return tuple(intervals)
+        # At 0 the level on the left meets the one on the right.
         jumps = sorted({0.0}.union(position for position, _ in self.steps))
         # Between two jumps the background is constant, so one position within is enough.
         middles = [0.5 * (left + right) for left, right in pairwise(jumps)]
@@ -445,10 +446,13 @@ def attributes_of(prestress: Prestress) -> dict[str, float | str]:
 
     The width is NaN if there is no Gaussian at x = 0.
     """
-    attributes = {name: getattr(prestress, name) for name in NUMBER_RANGES}
-    attributes["width"] = math.nan if prestress.width is None else prestress.width
-    attributes["steps_and_bumps"] = prestress.parts_as_json
-    return attributes
+    return {
+        "left": prestress.left,
+        "right": prestress.right,
+        "width": math.nan if prestress.width is None else prestress.width,
+        "peak": prestress.peak,
+        "steps_and_bumps": prestress.parts_as_json,
+    }
 
 
 def prestress_from(attributes: Mapping) -> Prestress:
@@ -475,7 +479,7 @@ def _make_prestress(parts_as_json: Any, left: Any, right: Any, width: Any, peak:
     try:
         # A profile that is not a table has no points.
         recorded = {"points": ()} | json.loads(parts_as_json)
-        parts = {name: recorded[name] for name in (*PART_RANGES, "points")}
+        parts = {name: recorded[name] for name in ("steps", "bumps", "points")}
     except (TypeError, ValueError, LookupError):
         allowed = "a JSON object of steps and bumps, and points of a table"
         text = short_repr(parts_as_json)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from .checks import check_number, check_that, first_true, refusal, short_repr
+from .checks import check_number, check_that, index_of_first_true, refusal, short_repr
 
 # Allowed ranges, in the form that `check_number` takes. A side level of 1 would release infinitely
 # many blocks at t = 0.
@@ -26,6 +26,7 @@ def convert_part(name: str, rows: Any) -> tuple[tuple[float, ...], ...]:
     name : "steps" or "bumps"
     rows : sequence with one row of numbers for each step or bump
     """
+    # The ranges are those of the numbers in a row, by their names.
     key, ranges = f"prestress.{name}", PART_RANGES[name]
     allowed = f"a list of [{', '.join(ranges)}]"
     try:
@@ -81,12 +82,13 @@ def check_order(x: np.ndarray) -> None:
 
     Rows are counted from 1 in the messages.
     """
-    before = first_true(np.diff(x) < 0.0)
+    # The index of the point before the first one that is too low. Its row is this index plus 1.
+    before = index_of_first_true(np.diff(x) < 0.0)
     if before is not None:
         row, position = before + 2, float(x[before + 1])
         allowed = f">= {x[before]:.10g}, the x of the row before"
         raise refusal(f"prestress.points x in row {row}", position, allowed)
-    first_of_three = first_true(x[2:] == x[:-2])
+    first_of_three = index_of_first_true(x[2:] == x[:-2])
     if first_of_three is not None:
         row, position = first_of_three + 3, float(x[first_of_three + 2])
         allowed = "at most 2 rows with the same x; the pre-stress jumps between them"

@@ -48,4 +48,4 @@ class Samples:
             raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             allowed = "increasing times >= 0"
-            raise ValueError(f"samples.times: not increasing or negative; allowed: {allowed}")
+            raise ValueError(f"samples.times: decreasing or negative; allowed: {allowed}")

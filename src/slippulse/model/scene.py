@@ -225,7 +225,8 @@ class Scene:
         is_resolved = peak_width is None or peak_width >= self.dx
         allowed = f">= dx = {self.dx:g}, so that blocks resolve it"
         check_that(is_resolved, "prestress.width", peak_width, allowed)
-        # The lattice has all bumps and all points that reach 1 from the start, which needs memory.
+        # At its start, the lattice already extends over all bumps and over all points that reach 1.
+        # If they are far away, this needs too much memory.
         max_reach = MAX_REACH_IN_BLOCKS * self.dx
         # The exact solution (scheme "continuum") uses the points of a table without a lattice.
         if self.prestress.points and self.scheme != "continuum":
@@ -306,7 +307,9 @@ class Scene:
         `from_attributes` makes the scene from them.
         """
         values = vars(self) | attributes_of(self.prestress)
-        values |= {"half_lattice": int(self.half_lattice), "damping_ratio": self.damping_ratio}
+        values["damping_ratio"] = self.damping_ratio
+        # A netCDF file has neither True and False nor mappings.
+        values["half_lattice"] = int(self.half_lattice)
         values["friction"] = json.dumps(self.friction.mapping())
         return {name: values[name] for name in ATTRIBUTES}
 
@@ -408,14 +411,14 @@ def gamma_without_extra_terms(attributes: Mapping) -> float:
 
 
 def stability_ratios(values: Mapping, friction: Friction) -> StabilityRatios:
-    """Return the dimensionless numbers on which the stable step depends.
+    """Return the dimensionless numbers on which the stable step depends: parameters in units of dx.
 
     values : parameters of a scene by name
     """
-    dx, stiffness = values["dx"], values["gamma"]
+    dx = values["dx"]
     return StabilityRatios(
         damping_ratio=values["beta"] / dx,
-        stiffness=stiffness * dx**2,
+        stiffness=values["gamma"] * dx**2,
         friction_slope=friction.traits.max_rate_slope * dx,
     )
 

@@ -88,10 +88,11 @@ def accurate_step(
 def choose_step(scheme: str, order: int, *ratios: float) -> float:
     """Return the longest step, in units of dx, that is accurate, and stable with a margin.
 
+    order : order of a Taylor step; other schemes do not use it
     ratios : beta/dx, gamma dx^2 and, optionally, alpha dx (see `largest_step`)
     """
     stable = STABILITY_MARGIN * largest_step(scheme, order, *ratios)
-    # Only this scheme takes Taylor steps.
+    # The localised scheme takes Taylor steps. The others have no condition for accuracy.
     if scheme != "localised":
         return stable
     return min(stable, accurate_step(MAX_STEP_ERROR, order, *ratios))
@@ -102,7 +103,8 @@ def choose_step(scheme: str, order: int, *ratios: float) -> float:
 def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: float) -> float:
     """Return the largest stable Taylor step, in units of dx; 0 if the polynomials overflow.
 
-    The interval that contains the bound is divided again and again.
+    Steps are tried from short to long. The bound lies between the first unstable step and the step
+    before it, and this interval is divided further in the same way.
 
     drag : alpha dx, not negative
     """
@@ -114,9 +116,10 @@ def _taylor_bound(order: int, damping_ratio: float, gamma_dx2: float, drag: floa
     )
     # Some orders amplify undamped modes slightly at every step size. This weak growth is allowed.
     max_amplification = 1.0 + (WEAK_GROWTH if order in WEAKLY_UNSTABLE_ORDERS else ROUNDING_GROWTH)
-    # The shortest step that is tried. It is not longer than the times in which the fastest mode
-    # changes, 1/damping_ratio, 1/drag and 1/sqrt(gamma_dx2). If even this step is unstable, the
-    # bound lies between 0 and this step.
+    # The shortest step that is tried is so small that it is usually stable, also with strong
+    # damping or stiff leaf springs: it is not longer than 1/damping_ratio, 1/drag and
+    # 1/sqrt(gamma_dx2), the times in which the fastest mode changes. If it is unstable, the bound
+    # lies between 0 and it.
     shortest = 0.01 / (1.0 + damping_ratio + drag) / max(1.0, 0.01 * math.sqrt(gamma_dx2))
     if shortest == 0.0:
         return 0.0

@@ -56,7 +56,7 @@ def read_stress_file(
 ) -> StressTable:
     """Read the columns of positions and pre-stress from a file.
 
-    x, prestress : the names of the two columns; by default POSITION_NAMES and STRESS_NAMES
+    x, prestress : names of the two columns; by default one of POSITION_NAMES and of STRESS_NAMES
 
     In a CSV file the first row has the names, and the second may have units. A row that begins with
     # is a comment. Raises StressFileError, which names the file, the row and what is allowed.
@@ -85,6 +85,8 @@ def read_stress_file(
 
 def read_dimensionless(path: str | Path, x: str | None, prestress: str | None) -> StressTable:
     """Read a file whose positions are in units of H and whose pre-stress is in stress drops.
+
+    x, prestress : names of the two columns; by default one of POSITION_NAMES and of STRESS_NAMES
 
     Raises StressFileError if the file names another unit, or if the first or last value, which
     holds everywhere beyond the table, is not < 1.
@@ -142,6 +144,7 @@ def _csv_rows(content: bytes) -> list[Row]:
         raise StressFileError(
             f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows"
         )
+    # The delimiter is None if spaces separate the cells.
     _, first_line = numbered_lines[0]
     delimiter = next((sign for sign in DELIMITERS if sign in first_line), None)
     return [Row(number, _cells(line, delimiter)) for number, line in numbered_lines]

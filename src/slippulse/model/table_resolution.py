@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .checks import first_true, refusal
+from .checks import index_of_first_true, refusal
 from .prestress import Prestress
 
 # The loss of a point is the amount by which its value lies outside the range of the pre-stress at
@@ -14,7 +14,10 @@ MAX_LOSS, MAX_RELATIVE_LOSS = 0.02, 0.4
 
 
 def check_resolved(prestress: Prestress, dx: float) -> None:
-    """Raise ValueError if the blocks do not resolve the table, or miss a point that reaches 1.
+    """Raise ValueError if the blocks do not resolve the table of points of a pre-stress.
+
+    If the stress reaches 1 at a point, which then slips at once, it must also do so at one of the
+    blocks around it. The other values must, on the whole, be between those of the blocks around.
 
     dx : spacing of the blocks, which lie at its multiples
     """
@@ -25,18 +28,20 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     left, right = np.ceil(in_spacings) - 1.0, np.floor(in_spacings) + 1.0
     neighbours = dx * np.array([left, np.round(in_spacings), right])
     is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
-    missed_point = first_true((tau >= 1.0) & ~is_released)
+    missed_point = index_of_first_true((tau >= 1.0) & ~is_released)
     if missed_point is not None:
         allowed = f"a value >= 1 also at a block; blocks are at multiples of dx = {dx:g}"
         raise refusal(
             f"prestress.points {tau[missed_point]:g} at x", float(x[missed_point]), allowed
         )
-    # The loss of a point is the amount by which it is above or below all of its three blocks.
+    # `level` is the table alone, without the nucleation peak. The loss of a point is the amount by
+    # which it is above or below all of its three blocks.
     at_blocks = prestress.level(neighbours)
     above_blocks = np.maximum(tau - at_blocks.max(axis=0), 0.0)
     below_blocks = np.maximum(at_blocks.min(axis=0) - tau, 0.0)
     losses = above_blocks + below_blocks
     rms_loss = float(np.sqrt(np.mean(losses**2)))
+    # A rough table may lose more, in proportion to its standard deviation.
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
         worst_point = int(np.argmax(losses))
         key = f"prestress.points: the blocks do not resolve the stress {tau[worst_point]:g} at x"

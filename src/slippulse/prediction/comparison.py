@@ -121,6 +121,7 @@ def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> 
     """
     beta, dx = run.attrs["beta"], run.attrs["dx"]
     steady = pulse_at_speed(tau, run.attrs["gamma"], beta, pulse.speed)
+    # In the damped layer, beta v U''' = -(v^2 - 1) U'' for the slip U and the speed v.
     layer_thickness = beta * pulse.speed / (pulse.speed**2 - 1.0)
     if layer_thickness > MAX_LAYER_TO_PULSE_WIDTH * steady.width:
         return "thick_front"

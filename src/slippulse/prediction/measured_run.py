@@ -162,8 +162,9 @@ def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleati
 def _has_all_blocks(run: xr.Dataset) -> bool:
     """Return True if no block of a run is missing.
 
-    The blocks must have equal distances. The first and the last one must never have been released.
-    The number of released blocks must be the number that the simulation has recorded.
+    The blocks must have equal distances. The first and the last one must never have been released,
+    since a lattice is longer than its rupture. The number of released blocks must be the number
+    that the simulation has recorded.
     """
     x, is_released = run["x"].values, np.isfinite(run["release_time"].values)
     if x.size < 2 or is_released[0] or is_released[-1]:

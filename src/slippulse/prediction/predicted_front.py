@@ -9,7 +9,7 @@ from ..model.release import RELEASES
 from ..model.run import Run
 from ..theory.front_speeds import front_speed
 from ..theory.front_speeds_with_springs import lattice_front_speed
-from .common import FAR_POSITIONS, far_level, rounded_damping_ratio, value_or_nan
+from .common import far_level, rounded_damping_ratio, value_or_nan
 
 # Friction laws for which these numbers are valid. Friction that is linear in slip rate does not
 # change the front speed.
@@ -29,7 +29,7 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
     # Without damping the exact speed is that of the paper's formula.
     undamped = [run._replace(beta=0.0) for run in runs]
     table: dict[str, np.ndarray | list[float]] = {}
-    for side in FAR_POSITIONS:
+    for side in ("left", "right"):
         table[f"paper_front_speed_{side}"] = exact_front_speeds(undamped, side)
         table[f"exact_front_speed_{side}"] = exact_front_speeds(runs, side)
         table[f"lattice_front_speed_{side}"] = [

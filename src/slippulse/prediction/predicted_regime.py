@@ -24,6 +24,8 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
+    Theory knows the final regime only for a constant level, or steps, on each side.
+
     still_fraction : a point is at rest below this fraction of the largest slip velocity
     """
     profile = run.prestress
@@ -82,10 +84,11 @@ def final_regime(
         return "arrested"
     if gamma > 0.0:
         # A front into a positive level remains faster than the waves. Behind it the nucleation
-        # point sticks, and the pulse becomes steady within a finite distance. A pulse into the
-        # level 0 becomes narrower in proportion to 1/t, and decays.
+        # point sticks, and the pulse becomes steady within a finite distance.
         if low > 0.0:
             return "pulses, two-way"
+        # A pulse into the level 0 becomes narrower in proportion to 1/t, and decays. Theory does
+        # not decide whether it lasts long enough to count as a second pulse.
         if low == 0.0:
             return UNDECIDED
         return "pulse, one-way, steady" if high > 0.0 else "pulse, one-way, decaying"
@@ -94,16 +97,13 @@ def final_regime(
     # is negative, du/dt therefore never falls.
     if low >= 0.0:
         return "crack-like, two-way"
-    # A pulse into the level 0 keeps its shape.
+    # From here on, low is negative. A pulse into the level 0 keeps its shape.
     if high == 0.0:
         return "pulse, one-way, steady"
-    # There remains a level -n < 0 on one side and a level p > 0 on the other. The front into -n is
-    # moved by waves that started on the front into p. A wave that started at a distance e from the
-    # nucleation point moves it to the distance (p/n) e, so that the integral of tau between the two
-    # positions is 0. So the front into -n never stops. Its speed tends to
-    # 1/(1 + (n/p)(1 + 1/v)) < 1, where v is the speed of the front into p. The slip velocity at the
-    # nucleation point, divided by the largest one, tends to r/(1 + 1/v + 2 r), where r = p/n. For a
-    # pulse this must be less than still_fraction, so that r is below `largest_pulse_ratio`.
+    # There remains a level -n < 0 on one side and a level p > 0 on the other. The front into p
+    # keeps running, and its waves move the front into -n, which is slower than they are but never
+    # stops. The smaller p/n, the slower is this front, and the smaller is the velocity at the
+    # nucleation point in comparison with the largest one.
     largest_ratio = float(
         largest_pulse_ratio(
             level=high, damping_ratio=damping_ratio, release=release, still_fraction=still_fraction
@@ -118,9 +118,11 @@ def largest_pulse_ratio(
 ) -> np.ndarray:
     """Return the ratio p/n of levels below which a rupture without leaf springs becomes a pulse.
 
-    The pre-stress level is p > 0 on one side, and -n < 0 on the other. With r = p/n and the speed v
-    of the front into p, the slip velocity at the nucleation point tends to r/(1 + 1/v + 2 r) times
-    the largest one. A pulse needs less than ``still_fraction``.
+    The pre-stress level is p > 0 on one side, and -n < 0 on the other. A wave that started on the
+    front into p, at a distance e from the nucleation point, moves the front into -n to the distance
+    (p/n) e, where the integral of the pre-stress between the two positions is 0. With r = p/n and
+    the speed v of the front into p, the slip velocity at the nucleation point therefore tends to
+    r/(1 + 1/v + 2 r) times the largest one. A pulse needs less than ``still_fraction``.
 
     level : the positive level p, a number or an array
     """

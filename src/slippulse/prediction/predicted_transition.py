@@ -64,24 +64,24 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
 
 
 def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
-    """Return the balance distance, the numbers of the transition, and those of the far pulse.
+    """Return the row of `predictions` for one run under a stress boundary.
 
-    The far pulse is the one that runs to the right, far from the nucleation. All numbers need a
-    pre-stress that is negative far to the left and 0 far to the right. Except for the balance
-    distance, they also need a single Gaussian between these levels. Without it, time and length of
-    the transition are NaN. Other numbers that cannot be computed are left out.
+    A number that theory does not have for this pre-stress is NaN, or missing.
 
     fraction : the transition is when the left front has covered this fraction of its way
     """
     row = {**NO_TRANSITION}
-    profile, damping_ratio = run.prestress, rounded_damping_ratio(run)
-    if far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0:
-        balance_position = value_or_nan(partial(prestress_balance_position, profile))
-        row["exact_balance_distance"] = -balance_position
-    width = _gaussian_width(profile)
-    if width and profile.left < 0.0 and profile.right == 0.0:
-        find_arrest = partial(_arrest, profile.left, damping_ratio, run.release, fraction)
-        for_unit_width = value_or(find_arrest, NO_TRANSITION)
+    # A balance position needs a negative level far to the left and the level 0 far to the right.
+    if not (far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0):
+        return row
+    balance_position = value_or_nan(partial(prestress_balance_position, run.prestress))
+    row["exact_balance_distance"] = -balance_position
+    # The other numbers also need a single Gaussian between these levels.
+    width = _gaussian_width(run.prestress)
+    if width:
+        left, damping_ratio = run.prestress.left, rounded_damping_ratio(run)
+        find_numbers = partial(_numbers_for_unit_width, left, damping_ratio, run.release, fraction)
+        for_unit_width = value_or(find_numbers, NO_TRANSITION)
         # All lengths and times, and the velocity, are proportional to the width.
         row |= {name: value * width for name, value in for_unit_width.items()}
     return row
@@ -104,11 +104,13 @@ def _first_stick(
 
 
 @cache
-def _arrest(left: float, damping_ratio: float, release: str, fraction: float) -> dict[str, float]:
-    """Return the numbers of the transition under a stress boundary, and of the far pulse.
+def _numbers_for_unit_width(
+    left: float, damping_ratio: float, release: str, fraction: float
+) -> dict[str, float]:
+    """Return the numbers of the transition under a stress boundary, and those of the pulse.
 
-    The pre-stress is a Gaussian of width 1 between the level left and 0. The numbers are named as
-    the columns of `predictions`.
+    The pre-stress is a Gaussian of width 1 between the level left and 0. The pulse is measured far
+    from the nucleation. The numbers are named as the columns of `predictions`.
 
     fraction : the transition is when the left front has covered this fraction of its way
     """
@@ -127,22 +129,22 @@ def _arrest(left: float, damping_ratio: float, release: str, fraction: float) ->
 def _half_width(crack: ArrestingCrack) -> float:
     """Return the width of the pulse far from the nucleation, at half of its peak velocity.
 
-    The pulse consists of waves that run to the right, and started on a front. The slip velocity of
-    the wave that started at x is half the integral of the pre-stress to the right of x. It is
-    largest where the pre-stress is 0, and half as large once on each side.
+    The pulse consists of waves that run to the right. Each starts at a position x when a front
+    arrives there. Its slip velocity is half the integral of the pre-stress to the right of x, which
+    is largest where the pre-stress is 0, and half as large at one position on each side.
     """
 
     def excess_over_half_peak(x: float) -> float:
         """Return the slip velocity of the wave that started at x, minus half the peak velocity."""
         return 0.5 * integral(crack.prestress, x, crack.end) - 0.5 * crack.peak_velocity
 
-    # The wave with the peak velocity started at crack.slow_start, where the pre-stress is 0. To the
-    # right of crack.end it is 0 everywhere.
+    # The wave with the peak velocity starts where the left front becomes slower than the waves,
+    # since the pre-stress is 0 there. To the right of crack.end it is 0 everywhere.
     start_of_peak = crack.slow_start
     ahead = root_between(excess_over_half_peak, start_of_peak, crack.end, xtol=1e-12)
     rear = root_between(excess_over_half_peak, crack.balance_position, start_of_peak, xtol=1e-12)
-    # x - t does not change along a wave, which starts when a front arrives at x. The width is the
-    # difference of the two values.
+    # A wave keeps its value of x - t. The width is the difference of these values between the wave
+    # ahead, which starts on a fast front, and the wave at the rear, on the slow left front.
     ahead_minus_time = ahead - float(crack.fronts.arrival(ahead))
     rear_minus_time = rear - crack.time_at(rear)
     return float(ahead_minus_time - rear_minus_time)

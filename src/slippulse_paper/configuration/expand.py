@@ -73,7 +73,7 @@ def _default_time_step(simulation: Mapping, run: Run, friction: Friction) -> flo
     All these time steps, also that of the preset, are divided by dx.
     """
     accuracy = simulation["accuracy"]
-    # The stability depends on beta/dx, gamma dx^2 and alpha dx.
+    # The stability depends on beta/dx, gamma dx^2 and alpha dx (alpha: rate strengthening).
     ratios = stability_ratios(run.parameters(), friction)
     stable_step = choose_step(simulation["scheme"], accuracy["order"], *ratios)
     # The largest step that resolves the law of friction.

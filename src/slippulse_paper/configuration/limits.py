@@ -29,6 +29,7 @@ def simulation_problems(config: Configuration) -> list[str]:
     """Return a line for each simulation with a scene that cannot be run.
 
     The scenes are checked on their own lattice and on the coarsest lattice of the grid study.
+    Extreme values may overflow. The checks refuse them, and so numpy need not warn.
     """
     accuracy, problems = accuracy_of(config), []
     for name, simulation in all_simulations(config).items():
@@ -50,8 +51,9 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
     # If any run is refused, one at the ends of the lists is, too. Only these are checked.
     scenes, _ = expand(with_promised_spacings(with_ends_of_lists(sweep)))
-    _check_profiles(scenes)
+    _refuse_low_prestress(scenes)
     _check_resolution(scenes)
+    # A scene may also be refused on the coarsest lattice of the grid study.
     coarsest = max(accuracy["coarser"])
     try:
         expand(with_promised_spacings(with_ends_of_lists(sweep | {"coarser": coarsest})))
@@ -71,7 +73,7 @@ def _note_on_units(config: Configuration, name: str) -> str:
     return f" ({scene.layer.layer(scene.boundary).units_in_words})"
 
 
-def _check_profiles(scenes: Sequence[Scene]) -> None:
+def _refuse_low_prestress(scenes: Sequence[Scene]) -> None:
     """Raise ValueError for a pre-stress with which nothing ever moves."""
     # Many scenes share a profile. A dictionary keeps each profile and spacing once.
     different_profiles = dict.fromkeys((scene.prestress, scene.dx) for scene in scenes)
@@ -105,7 +107,11 @@ def _largest_prestress(profile: Prestress, dx: float) -> float:
 
 
 def _check_resolution(scenes: Sequence[Scene]) -> None:
-    """Raise ValueError if the pulse has far too few blocks in every scene."""
+    """Raise ValueError if the pulse has far too few blocks in every scene.
+
+    A run is only flagged if its pulse has fewer than ``resolved_blocks`` blocks. A simulation is
+    refused if no pulse has the fraction HARDLY_RESOLVED of them.
+    """
     # All scenes of a simulation have the same resolved_blocks.
     fewest_blocks = HARDLY_RESOLVED * scenes[0].resolved_blocks
     # Computing the width takes time. Scenes with wide pulses come first, so that one is usually
@@ -126,8 +132,8 @@ def _pulse_blocks(scene: Scene) -> float:
     """Return the number of blocks across the pulse of a scene.
 
     If the stress is held, return the number of blocks across the narrowest Gaussian instead, since
-    a pulse then has no constant width. The result is infinity if there are no blocks, or if theory
-    does not give a pulse width.
+    a pulse then has no constant width. The result is infinity, with which no scene is refused, if
+    there are no blocks or theory gives no pulse width.
     """
     if scene.boundary == "stress" and scene.scheme != "continuum":
         return scene.prestress.narrowest / scene.dx
@@ -135,7 +141,7 @@ def _pulse_blocks(scene: Scene) -> float:
     if scene.scheme == "continuum" or level <= 0.0 or used_extra_terms(vars(scene)):
         return math.inf
     try:
-        # The pulse in uniform pre-stress at the higher of the two levels.
+        # The pulse is widest in uniform pre-stress at the higher of the two levels.
         speed = float(front_speed(level, scene.damping_ratio, scene.release))
         return pulse_at_speed(level, scene.gamma, scene.beta, speed).width / scene.dx
     except (ValueError, ArithmeticError):

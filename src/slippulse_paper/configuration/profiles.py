@@ -148,7 +148,7 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
     """Return the pre-stress of one expanded profile."""
     if not any(key in profile for key in TABLES):
         return Prestress(**profile)
-    # The results are cached. The cache needs an argument that cannot be altered.
+    # The results are cached. The cache needs a hashable argument.
     return _prestress_of_table(json.dumps(profile, sort_keys=True))
 
 
@@ -157,7 +157,7 @@ def prestress_of(profile: Mapping[str, Any]) -> Prestress:
 def _prestress_of_table(text: str) -> Prestress:
     """Return the pre-stress of a profile with a table, from the profile as JSON.
 
-    The cache needs an argument that cannot be altered, which a dictionary is not.
+    The cache needs a hashable argument, which a dictionary is not.
     """
     profile = json.loads(text)
     x, tau = rough(**profile["rough"]) if "rough" in profile else np.array(profile["points"]).T

@@ -55,17 +55,18 @@ def read_config(
         # An overlay from `read_overlay` has the points of its files already.
         with_points = with_points_of_files(with_new_names(overlay), Path())
         merged = _merge(merged, with_points)
-    _check_shipped_simulations(merged, shipped)
+    _refuse_removed_simulations(merged, shipped)
     config = _validated(merged)
     if every_run:
         problems = simulation_problems(config)
-        problems += _text_problems(merged["published"], shipped["published"])
+        # Only statements that an overlay has changed are checked.
+        problems += _unreadable_statements(merged["published"], shipped["published"])
         if problems:
             raise ConfigError(format_problems(problems))
     return config
 
 
-def _check_shipped_simulations(merged: Mapping, shipped: Mapping) -> None:
+def _refuse_removed_simulations(merged: Mapping, shipped: Mapping) -> None:
     """Raise ConfigError if a shipped simulation was removed."""
     sweeps = merged.get("simulations")
     if not isinstance(sweeps, Mapping):
@@ -91,7 +92,7 @@ def _validated(merged: Mapping) -> Configuration:
         raise ConfigError(format_problems(sorted(lines))) from None
 
 
-def _text_problems(given: Mapping, shipped: Mapping) -> list[str]:
+def _unreadable_statements(given: Mapping, shipped: Mapping) -> list[str]:
     """Return a line for each statement in ``published`` that cannot be shown on a page.
 
     Only statements that differ from the shipped ones are checked, since this takes time.
@@ -237,6 +238,7 @@ class _PlainComposer(Composer):
             refusal = f"tag {short_repr(str(event.tag))}; allowed: no tags"
         elif is_key and not isinstance(event, ScalarEvent):
             refusal = "a collection as a key; allowed: text"
+        # Without a parent the file is empty, which `read_overlay` refuses.
         elif _is_missing(event) and parent is not None:
             refusal = _refusal_of_missing_value(parent, index)
             if isinstance(index, ScalarNode):

@@ -54,9 +54,9 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     if path and path[-1] == PYDANTIC_KEY_MARK:
         return _name_line(path)
     entry = _last_known_entry(path, config)
-    # Errors such as an unknown key are errors of a mapping, and the path leads to one of its keys.
-    # If the mapping is only one of several forms that a value may have, the known entry ends before
-    # it. The value is then refused as a whole, without regard to its keys.
+    # Find the mapping that may be in error. The path of an unknown or missing key ends with the
+    # key. If the mapping is only one of several forms that a value may have, the known entry ends
+    # before it. The value is then refused as a whole, without regard to its keys.
     mapping_path = path if kind == "value_error" else path[:-1]
     is_known_mapping = len(mapping_path) <= len(entry.path)
     if is_known_mapping:
@@ -76,8 +76,10 @@ def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
     """
     kind, path = problem["type"], problem["loc"]
     if kind == "value_error":
+        # The reason begins with the key in the mapping.
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
+    # A number that is missing in a row has an int at the end of the path. It is another kind.
     if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     return _unknown_key_line(path, config) if kind == "extra_forbidden" else None
@@ -142,7 +144,7 @@ class _Entry(NamedTuple):
 def _last_known_entry(path: Path, config: Any) -> _Entry:
     """Return the last entry on a path of pydantic that has a value and a single schema.
 
-    The path goes further if a value has several allowed forms, or if a key is missing.
+    The path may lead on to a missing key, or to one of several allowed forms of a value.
     """
     schema, value = dereferenced(json_schema()), config
     for depth, part in enumerate(path):

@@ -42,6 +42,7 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
     preset = config.presets[config.preset].plain()
     if config.accuracy is None:
         return preset
+    # With this step and order, nearly all of the error is due to the spacing.
     return preset | {"max_step": LARGEST_STEP, "order": TAYLOR_ORDER, "promise": config.accuracy}
 
 
@@ -56,13 +57,15 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     defaults |= {key: [defaults[key]] for key in LISTED if key in defaults}
     given = Simulation.model_validate(simulation).plain()
     del given["chunks"]
+    # Turn this deprecated key, a list of numbers, into laws of friction.
     if "rate_strengthening" in given:
         given["friction"] = [*map(_linear_law, given.pop("rate_strengthening"))]
     if "profiles" in given:
         given["profiles"] = without_files(given["profiles"])
     numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
-    # The accuracy that the user requires (promise) can only be kept if the spacing is free. A fixed
-    # beta also fixes the spacing, because another one would change beta/dx.
+    # The accuracy that the user requires (promise) can only be kept if the spacing is free. It is
+    # given as dx or as spacing.fixed. A beta other than 0 also fixes it, because another spacing
+    # would change beta/dx.
     has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in numerical and has_own_spacing:
         # NaN means that no accuracy is promised.
@@ -95,11 +98,10 @@ def scene_simulation(scene: NamedScene, model: Model, dx: float) -> Simulation:
 
     dx : block spacing of the preset, which is used unless the scene sets its own
     """
-    # A layer determines this ratio. The conversion below removes the layer.
+    # The friction ratio follows from the layer, which the conversion to model units removes.
     friction_ratio = None
     if scene.layer is not None:
         friction_ratio = scene.layer.layer(scene.boundary).friction_ratio
-    # The scene in these units has no layer any more.
     scene = scene.in_model_units()
     given = scene.plain()
     del given["title"]
@@ -140,8 +142,8 @@ def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndar
     # At a pre-stress of 0 or less, a front is not faster than waves, whose speed is 1.
     is_fast, speeds = levels > 0.0, np.ones(levels.shape)
     if is_fast.any():
-        # Theory covers damping ratios up to this limit. With the release rule "total", fronts are
-        # at least as fast as with the other one.
+        # `front_speed` refuses damping ratios above 1e100, which no useful scene has. With the
+        # release rule "total", fronts are at least as fast as with the other one.
         ratio = min(damping_ratio, LARGEST_RATIO)
         speeds[is_fast] = front_speed(levels[is_fast], ratio, release="total")
     return speeds
@@ -150,13 +152,13 @@ def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndar
 def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any]) -> float:
     """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
 
-    It is the sum of the farthest distance at which slip starts, the largest front speed times the
-    duration, and an allowance for the Gaussian.
+    It is the sum of the distance of the farthest bump, where slip may start, the distance that a
+    front covers in the duration, and the width in which the Gaussian at x = 0 makes it faster.
 
     damping_ratio : largest damping ratio of the scene
     profile : the keys of the scene that describe its pre-stress
     """
-    # Slip may start at a bump, and four widths away from its centre a bump is negligible.
+    # Four widths away from its centre, a bump is negligible.
     farthest_bump = max((abs(x) + 4.0 * width for x, _, width in scene.bumps), default=0.0)
     if scene.left is not None and scene.right is not None:
         step_levels = [level for _, level in scene.steps]
@@ -173,13 +175,14 @@ def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any])
         highest = max([0.0, *table_levels])
         levels = np.linspace(0.0, highest, FRONT_SPEED_LEVELS)
         speeds = _bounds_of_front_speeds(levels, damping_ratio)
+        # In a table, slip may start at any point within nucleation_reach.
         reach = bound_front_reach(
             table,
             start=table.nucleation_reach,
             duration=scene.duration,
             speeds_at=lambda tau: np.interp(tau, levels, speeds),
         )
-    # Within three widths, the Gaussian at x = 0 raises the speed.
+    # Three widths away from x = 0, the Gaussian is negligible.
     width = scene.width or 0.0
     return farthest_bump + reach + 3.0 * width
 

@@ -117,6 +117,7 @@ def run_count(simulation: Mapping) -> int:
 def _axes(simulation: Mapping) -> dict[str, Collection]:
     """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
     # A list that is not given has one entry: its default, or None if something else sets the value.
+    # The damping is the list of beta, or that of the damping ratio if there is no list of beta.
     release = simulation["release"]
     releases = [release] if isinstance(release, str) else release
     return {
@@ -157,9 +158,9 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
 def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
     """Return the block spacing of a run, whose number from 0 is ``index``.
 
-    The key ``spacing`` may fix it. Otherwise it is the spacing for a required accuracy
-    (``spacings``) or an entry of the list ``dx``, or a rule in ``spacing`` gives it. On the coarser
-    lattices of a grid study it is larger by the factor ``coarser``.
+    The key ``spacing`` may fix it for all lattices. Otherwise it is the spacing for a required
+    accuracy (``spacings``) or an entry of the list ``dx``, or a rule in ``spacing`` gives it. It is
+    then larger by the factor ``coarser`` on the coarser lattices of a grid study.
     """
     rule = simulation["spacing"]
     if "fixed" in rule:

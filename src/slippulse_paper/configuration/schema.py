@@ -79,6 +79,7 @@ def check_name(key: str, name: str, names: Iterable[str], allowed: str) -> None:
 
 def _all_different(values: list[T]) -> list[T]:
     """Return a list unchanged, or raise an error if it has an entry twice."""
+    # Entries may be lists or mappings, which a set cannot hold. Their texts are compared instead.
     if len({*map(repr, values)}) < len(values):
         raise PydanticCustomError("different", "an entry twice")
     return values
@@ -573,9 +574,10 @@ class NamedScene(Profile, PhysicsOfScene):
 
     @model_validator(mode="after")
     def _check_in_model_units(self) -> Self:
-        """Raise ValueError if the scene is not allowed.
+        """Raise ValueError if the spacing, or a key of a scene with a layer, is not allowed.
 
-        A scene with a layer is converted from SI units first.
+        The pre-stress of a scene with a layer is converted from SI units before it is checked. It
+        has been checked already if there is no layer.
         """
         if self.layer is None:
             too_large = self.dx is not None and self.dx > 1.0
@@ -623,6 +625,7 @@ class NamedScene(Profile, PhysicsOfScene):
                 converted[name] = layer.level_from_pascal(name, value)
             else:
                 converted[name] = layer.convert_from_si(value, quantity)
+        # The spacing, if the scene has one, is now in units of the thickness.
         allowed = f"a number > 0 and <= the thickness, {layer.thickness:g} m"
         require((converted.get("dx") or 0.0) <= 1.0, f"dx: {self.dx}", allowed)
         converted |= self._tables_and_steps_in_model_units(layer)
@@ -911,6 +914,7 @@ class Configuration(Block):
         measured = "a measured number, which is a column of the tables in results/measurements"
         check_name(f"{key}.quantity", quantity, record_for, measured)
         needed, recorded = record_for[quantity], self.simulations[simulation].record
+        # Every simulation records "fronts".
         allowed = (
             f"a number that simulations.{simulation} records, or record: [fronts, {needed}] there"
         )

@@ -76,24 +76,29 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     ratio_axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${length}$ / formula")
     # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
     are_rising = boundary == "displacement"
-    # One row of entries above the lines leaves every entry clear of them.
-    ratio_axes.legend(
-        loc="upper left" if are_rising else "upper right",
-        fontsize=SMALL_TEXT,
-        ncols=LINE_COUNT,
-        columnspacing=1.0,
-        handlelength=1.2,
-    )
-    bottom, top = ratio_axes.get_ylim()
-    ratio_axes.set_ylim(bottom, top + 0.15 * (top - bottom))
+    add_legend_above_lines(ratio_axes, "upper left" if are_rising else "upper right")
     draw_prestress_inset(length_axes, runs, level_column)
     length_axes.set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
-        look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
-        # The scale of left is stretched, and ticks at equal distances would overlap.
-        look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
-        bar = figure.colorbar(colour_scale(column), ax=panels, **look)
-        bar.set_label(f"${SYMBOLS[column]}$")
+        add_colour_bar(figure, panels, column)
+
+
+def add_legend_above_lines(axes: Axes, location: str) -> None:
+    """Add a legend of one row at the top of a panel, and room for it above the lines."""
+    axes.legend(
+        loc=location, fontsize=SMALL_TEXT, ncols=LINE_COUNT, columnspacing=1.0, handlelength=1.2
+    )
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(bottom, top + 0.15 * (top - bottom))
+
+
+def add_colour_bar(figure: Figure, panels: list[Axes], column: str) -> None:
+    """Add the colour bar of a parameter below a column of panels."""
+    look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
+    # The scale of left is stretched, and ticks at equal distances would overlap.
+    look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
+    bar = figure.colorbar(colour_scale(column), ax=panels, **look)
+    bar.set_label(f"${SYMBOLS[column]}$")
 
 
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:

@@ -222,6 +222,7 @@ class RecordedFiles:
         for path, record in self.records.items():
             folder = _recorded_folder(path)
             outputs = [str(folder / name) for name in record.outputs]
+            # The recorded path of an input may lead out of the folder, by "..".
             inputs = {
                 os.path.normpath(folder / name): digest for name, digest in record.inputs.items()
             }

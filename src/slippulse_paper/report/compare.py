@@ -282,8 +282,8 @@ def _print_lines(title: str, lines: Sequence[str]) -> None:
 def main(arguments: Sequence[str]) -> int:
     """Compare two folders, write the page if its path is given, and return the exit code.
 
-    Without a page, the exit code is 0 only if everything is in both folders and agrees. With a
-    page, differences do not count as a failure, and the exit code is 0. It is 1 after an error.
+    The exit code is 1 after an error. Without a page, it is also 1 if the folders differ or have no
+    run in common. With a page, differences do not count as a failure.
     """
     paths = [Path(argument) for argument in arguments]
     new, old = paths[:2]
@@ -291,6 +291,7 @@ def main(arguments: Sequence[str]) -> int:
     try:
         result = compare(new, old)
         if page is not None:
+            # compare_page imports this module, so that it cannot be imported at the top.
             from .compare_page import write_comparison
 
             write_comparison(result, new, old, page)

@@ -77,7 +77,10 @@ def compared_columns(new: pd.DataFrame, old: pd.DataFrame) -> ComparedColumns:
 
 def read_runs(path: Path) -> pd.DataFrame:
     """Read a table of measured runs. Raises ValueError if it lacks a parameter of the runs."""
-    return _read_table(path, RUN_COLUMNS)
+    table = _read_table(path, RUN_COLUMNS)
+    # Runs are joined by the texts of their parameters. A column that has only whole numbers in one
+    # of the tables would have other texts there if it were not converted.
+    return table.astype(dict.fromkeys(table.select_dtypes("number"), float))
 
 
 def with_uncertainties(table: pd.DataFrame, numbers: list[str], study: Path) -> MeasuredRuns:
@@ -109,8 +112,7 @@ def compare_numbers(
 
     The result has one row for each number of each run, with its outcome: the numbers agree, or they
     differ, or it is unknown because different lattices gave them and they have no uncertainty. If
-    only one of the two runs has a number, it counts as different on equal lattices, and is left out
-    otherwise.
+    only one of the two runs has a number, it counts as different on equal lattices only.
 
     new, old : the paired runs, in the same order
     parameters : columns that describe a run
@@ -125,12 +127,16 @@ def compare_numbers(
     tolerance = EQUAL_LATTICE_TOLERANCE * numbers["new"].abs().clip(lower=1.0)
     numbers["allowed"] = numbers["allowed"].mask(should_be_equal, tolerance)
 
-    agrees = (numbers["new"] - numbers["old"]).abs() <= numbers["allowed"]
+    # An infinite number agrees only with an equal one.
+    numbers.loc[np.isinf(numbers["new"]), "allowed"] = 0.0
+    difference = (numbers["new"] - numbers["old"]).abs()
+    agrees = (difference <= numbers["allowed"]) | (numbers["new"] == numbers["old"])
     is_unknown = ~agrees & ~is_same_lattice & ~has_uncertainty
     numbers["outcome"] = DIFFERS
     numbers.loc[agrees, "outcome"] = AGREES
     numbers.loc[is_unknown, "outcome"] = UNKNOWN
 
+    # On a coarser lattice some numbers cannot be measured. A missing number is no difference then.
     has_both = numbers[["new", "old"]].notna().all(axis=1)
     has_one = numbers[["new", "old"]].notna().any(axis=1)
     return numbers[has_both | (has_one & is_same_lattice)]

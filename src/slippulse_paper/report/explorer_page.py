@@ -66,6 +66,7 @@ def front_law(law: pd.DataFrame) -> dict:
     row_values, column_values = law["ratio_arsinh"].unique(), law["excess_log"].unique()
     last_row = float(row_values[-1])
     first_column, last_column = float(column_values[0]), float(column_values[-1])
+    # The table has nine digits, and the scale is rounded to remove their error.
     scale = float(law["damping_ratio"].max() / np.sinh(last_row))
     grids: dict = {
         "ratio": {"scale": round(scale, 6), "step": last_row / (len(row_values) - 1)},

@@ -173,6 +173,7 @@ def names_for(inputs: Inputs, show: Callable[[str], None], document: str) -> dic
     summary = read_text(folder / "summary.yaml")
     lines = judged_lines(summary, ledger, evaluated)
     shipped_verdicts = read_text(folder / "shipped_verdicts.yaml") or {}
+    # "further" shows the figures that no text shows, and "see" returns a reference to a figure.
     names |= {
         "figure": lambda name: show(gallery.figure(name)),
         "further": lambda: show(gallery.further()),

@@ -208,7 +208,7 @@ def published(ledger: Ledger, readings: Mapping[str, Mapping]) -> str:
 
     readings : the part ``published`` of the configuration
     """
-    # These two claims have our values as further numbers, by the statement of the reading.
+    # The further numbers of these two claims are our values, by the statement of each reading.
     left_panel = ledger("published_space_time_figure").further
     right_panel = ledger("published_space_time_figure_right").further
     our_values = left_panel | right_panel
@@ -285,7 +285,7 @@ def errata(entries: Sequence[Mapping[str, str]], fill: Callable[[str], str]) -> 
 def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
     """Return a table of the observed order and the relative uncertainty of STUDIED_QUANTITIES.
 
-    The column "runs" counts the runs with a known uncertainty, or all runs if there are none.
+    The column "runs" counts the runs with a known uncertainty.
 
     tables : tables by name; those of grid studies have names such as "uncertainties/NAME"
     """
@@ -295,7 +295,7 @@ def grid_studies(tables: Mapping[str, pd.DataFrame]) -> str:
         study = study[study["quantity"] == quantity]
         relative = (study["uncertainty"] / study["value"].abs()).dropna()
         if relative.empty:
-            rows.append((name, len(study), DASH, DASH, DASH))
+            rows.append((name, 0, DASH, DASH, DASH))
             continue
         orders = study["observed_order"]
         order = number(orders.median(), 2) if orders.notna().any() else DASH
@@ -341,15 +341,16 @@ def layer_runs(study: pd.DataFrame) -> str:
 
     The strength falls by Delta tau over the slip d_c. The zone behind the tip in which it falls has
     a length of the order of G d_c/Delta tau, which is gamma d_c in units of the height H. The table
-    has this length in cells of the finest grid of each run. It also lists the numbers of cells over
-    the height H of all grids.
+    has this length in cells of the finest grid of each run.
 
     study : the table of the study layer
     """
     rows = []
     for part, title in LAYER_PARTS.items():
         on_all_grids = study[study["part"] == part].sort_values("cells", kind="stable")
-        # These columns identify a run (weakening is d_c). The row on its finest grid comes last.
+        # The column "cells" has the cells over the height H. The columns below identify a run:
+        # "weakening" is d_c, "coupling" the friction coefficient if the strength follows the
+        # pressure, and "before" the pre-stress before a step. The finest grid of a run comes last.
         finest = on_all_grids.drop_duplicates(
             ["gamma", "tau0", "weakening", "coupling", "before"], keep="last"
         )

@@ -128,9 +128,8 @@ def _paths(files: Mapping[str, str | list[str]]) -> list[str]:
 def progress_writer(stream: TextIO, name: str) -> Callable[[float, int], None]:
     """Return a function that writes how much of a job is done and how long the rest will take.
 
-    The arguments of this function are the number of finished runs, which is a fraction during a
-    single run, and the number of all runs. It writes a line only if the last one is some seconds
-    old.
+    The returned function takes the number of finished runs, which is a fraction during a single
+    run, and the number of all runs. It writes a line only if the last one is some seconds old.
     """
     began = last_written = time.monotonic()
 

@@ -63,6 +63,7 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     # The columns of the joined table have the order of the first chunk in this list. It must be the
     # chunk with the first run of the sweep.
     chunks.sort(key=lambda chunk: chunk.index[0])
+    # A chunk lacks the columns of numbers that were measured in none of its runs.
     table = pd.concat(chunks).sort_index().fillna("")
     if has_factor:
         # Move the column to the end.
@@ -94,7 +95,7 @@ def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
-    # The columns that identify a run. They are removed here, because the next step adds rows.
+    # Remove the columns that identify a run, because the rows that are added next would lack them.
     keys = run_columns(measured.columns)
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=keys)
     # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets

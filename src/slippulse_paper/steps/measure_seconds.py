@@ -50,7 +50,7 @@ def run(files: dict, outputs: dict, settings: dict) -> None:
 def timed(errors_by_setting: pd.DataFrame) -> pd.DataFrame:
     """Time the simulations of each setting, and return its errors with the processor seconds.
 
-    The result has one row for each error of a setting, in the form of `error_rows`. One error is
+    The result has the rows that the figure draws, each with one error of a setting. One error is
     measured in the simulation of a crack, and has the seconds of this simulation. All others are
     measured in simulations of a pulse, and have the mean seconds over its damping ratios.
 

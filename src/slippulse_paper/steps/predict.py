@@ -26,10 +26,9 @@ DIGITS = 15
 def run(files: dict, outputs: dict, settings: dict) -> None:
     """Write the table ``predicted`` for the resolved simulation ``sweep`` in the settings.
 
-    The settings also have the topics of the predictions (``topics``), and two fractions: that of
-    its path which the left front has covered at the transition under a stress boundary
-    (``fraction``), and that of the largest slip velocity below which a point counts as at rest
-    (``still``).
+    The settings also have the topics of the predictions (``topics``), and two fractions. Under a
+    stress boundary, the left front has covered the part ``fraction`` of its path at the transition.
+    A point counts as at rest below the part ``still`` of the largest slip velocity.
     """
     swept_runs = [*runs(settings["sweep"])]
     table = predictions(settings["topics"], swept_runs, settings)

@@ -62,7 +62,8 @@ def _load_measured(path: str, is_chunk: bool) -> pd.DataFrame:
     if not is_chunk:
         return measured
     # A column of floats may happen to have only whole numbers in one chunk, and is then read as
-    # integers. It is read again as floats, because the integer -0 would lose its sign.
+    # integers. It is read again as floats, because the integer -0 would lose its sign. Some
+    # parameters and labels are integers in every table, and stay as they are.
     integer_columns = measured.select_dtypes("integer").columns
     measured_columns = integer_columns.difference([*PARAMETERS, *LABELS])
     return load_table(path, dict.fromkeys(measured_columns, float))

@@ -41,6 +41,7 @@ def pandoc(text: str, source: str, to: str, options: Sequence[str]) -> str:
     """
     command = [str(PANDOC), f"--data-dir={DATA_FOLDER}", f"--from={source}", f"--to={to}"]
     command += ["--fail-if-warnings", *options]
+    # No variable of the user has an effect on the result.
     environment = {"LC_ALL": "C.UTF-8"}
     done = subprocess.run(
         command, input=text.encode(), capture_output=True, check=False, env=environment

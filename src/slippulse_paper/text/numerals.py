@@ -62,8 +62,8 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
 
     Value and uncertainty are rounded by the rule of the Particle Data Group, which keeps one or two
     digits of the uncertainty. A value gets at most `MAX_DIGITS_WITH_UNCERTAINTY` digits: a smaller
-    uncertainty is rounded up to one in the last of them. ``unknown`` is appended to a value without
-    an uncertainty.
+    uncertainty is rounded up to one in the last of them. A value with the uncertainty 0 is exact.
+    ``unknown`` is appended to a value whose uncertainty is not known.
     """
     if value is None or not math.isfinite(value) or uncertainty == 0.0:
         return number(value, MAX_DIGITS)
@@ -71,7 +71,8 @@ def with_uncertainty(value: float | None, uncertainty: float | None, unknown: st
         return number(value, MAX_DIGITS) + unknown
     from uncertainties import ufloat
 
-    # The formats give the short form with parentheses (S) and powers of ten in Unicode (P).
+    # The formats give the short form with parentheses (S) and powers of ten in Unicode (P). The
+    # format .1u keeps one digit of the uncertainty.
     if value:
         magnitude = math.floor(math.log10(abs(value)))
         last_digit = 10.0 ** (magnitude + 1 - MAX_DIGITS_WITH_UNCERTAINTY)

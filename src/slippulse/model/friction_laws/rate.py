@@ -28,7 +28,7 @@ class LinearRate(Friction):
 
 @dataclass(frozen=True)
 class BoundedRate(Friction):
-    """Friction F v/(v + v_0), where ``limit`` is F; it weakens with slip rate v if F < 0."""
+    """Friction limit v/(v + v_0), which weakens with slip rate v if limit < 0."""
 
     limit: float
     v_0: float
@@ -38,18 +38,18 @@ class BoundedRate(Friction):
 
     @staticmethod
     def friction(slip, velocity, limit, v_0):
-        """Return F v/(v + v_0)."""
+        """Return limit v/(v + v_0)."""
         return limit * velocity / (velocity + v_0)
 
     @property
     def traits(self) -> Traits:
-        """Slope F/v_0, which is steepest at rest; if F < 0, friction drives slip by up to -F."""
+        """Slope limit/v_0 at rest, where it is steepest; friction drives slip if limit < 0."""
         return Traits(max_rate_slope=self.limit / self.v_0, max_drive=max(-self.limit, 0.0))
 
 
 @dataclass(frozen=True)
 class RateWeakening(Friction):
-    """Friction -min(a v, F), where ``slope`` is a and ``limit`` is F."""
+    """Friction -min(slope v, limit), which weakens with slip rate v."""
 
     slope: float
     limit: float
@@ -60,17 +60,17 @@ class RateWeakening(Friction):
 
     @staticmethod
     def friction(slip, velocity, slope, limit):
-        """Return -min(a v, F)."""
+        """Return -min(slope v, limit)."""
         return -min(slope * velocity, limit)
 
     @property
     def traits(self) -> Traits:
-        """Kink at slip rate F/a, and a time step that resolves the growth of slip rate.
+        """Kink at slip rate limit/slope, and a time step that resolves the growth of slip rate.
 
-        Up to the kink, friction falls with slip rate by the slope a, and slip rate grows by a
-        factor e in the time 1/a. Beyond it friction is -F. Friction drives slip by up to F.
+        Up to the kink, slip rate grows by a factor e in the time 1/slope. Friction is never
+        positive, so that it drives slip, at most by ``limit``.
         """
-        # If a or F is 0, there is no friction.
+        # If the slope or the limit is 0, there is no friction.
         if self.slope * self.limit == 0.0:
             return Traits()
         kink_rate = self.limit / self.slope
