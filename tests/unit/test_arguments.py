@@ -90,8 +90,11 @@ for name in LATTICES:
 SCENES["max_step: 0.2; allowed: <= "] = {"scheme": "fixed_step", "beta": 1e200}
 LAWS = {
     "law: 'velocity'; allowed: coulomb, linear_rate": ("velocity", {}),
-    "alpha: 0.1; allowed: law 'coulomb' with nothing": ("coulomb", {"alpha": 0.1}),
-    "nucleation: missing; allowed: law 'slip_weakening' with": ("slip_weakening", {"d_c": 0.1}),
+    "alpha: 0.1; allowed: no parameter with law 'coulomb'": ("coulomb", {"alpha": 0.1}),
+    "nucleation: missing; allowed: d_c, nucleation with law 'slip_weakening'": (
+        "slip_weakening",
+        {"d_c": 0.1},
+    ),
     "d_c: 0.0; allowed: a finite number": ("slip_weakening", {"d_c": 0.0, "nucleation": 1.0}),
     "slope: -1.0; allowed: a finite number": ("rate_weakening", {"slope": -1.0, "limit": 1.0}),
     "alpha: nan; allowed: a finite number": ("linear_rate", {"alpha": math.nan}),
@@ -150,7 +153,7 @@ SAMPLES = {
     "samples.times: decreasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
     "decreasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
-    "samples: times and positions; allowed: one-dimensional arrays": ([0.0, 1.0], 0.0),
+    "samples: times or positions of another shape; allowed: one-dimensional": ([0.0, 1.0], 0.0),
 }
 
 recorded_sweep = lambda name: sp.run_sweep([TINY], record=(name,))

@@ -239,7 +239,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         upper *= SPEED_FACTOR
     if not MIN_SPEED < upper < MAX_SPEED:
         values = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
-        allowed = f"values with a steady rupture at a speed from {MIN_SPEED} to {MAX_SPEED}"
+        allowed = f"values at which a steady rupture has a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
     speed = root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
     zone_end, slip_beyond_zone = _weakening_zone_and_slip_beyond(
@@ -296,7 +296,7 @@ def rate_pulse(
     """
     check_domains(tau0=tau0, gamma=gamma)
     if friction.friction(0.0, 0.0, *friction.kernel_parameters) != 0.0:
-        allowed = "laws that are 0 at rest and depend on slip rate alone"
+        allowed = "laws without friction at rest that depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
     path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
@@ -342,7 +342,7 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
                 f"computing the pulse takes more than {MAX_EVALUATIONS} evaluations of the "
                 f"friction law"
             )
-            allowed = "larger values, or weaker friction"
+            allowed = "a larger gamma, or weaker friction"
             raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *parameters)
