@@ -313,7 +313,7 @@ CALLS = {
         2.7e6, DURATION, DX
     ),
     "duration_in_seconds: 0; allowed": lambda: BLOCK.scene((X, STRESS), 0, DX),
-    "gamma: 0.6; allowed: none, since the layer or the arguments": lambda: BLOCK.scene(
+    "gamma: 0.6; allowed: no value, since the layer or the arg": lambda: BLOCK.scene(
         (X, STRESS), DURATION, DX, gamma=0.6
     ),
     "beta: 0.1; allowed: none, since damping_ratio is given": lambda: BLOCK.scene(
