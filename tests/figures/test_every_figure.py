@@ -261,6 +261,15 @@ def test_ensembles_in_which_no_pulse_dies_are_drawn(draw):
     drawn.module.draw(without_deaths).draw_without_rendering()
 
 
+def test_errors_without_any_sound_run_keep_their_entries_in_the_legend(draw):
+    drawn = draw("study_exact_transition")
+    flagged = drawn.table.assign(run_flags="died_out")
+    figure = drawn.module.draw(flagged)
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    assert len(legend.get_texts()) == 4
+
+
 @pytest.mark.parametrize("name", ["fig05_scaling", "fig10_damping_displacement"])
 def test_a_collapse_without_any_transition_says_so(draw, name):
     drawn = draw(name)

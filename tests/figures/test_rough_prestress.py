@@ -5,10 +5,15 @@ import math
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from selection import small_sweep
 
 import slippulse as sp
 from slippulse.data.points import Recorded
+from slippulse.simulation.simulate import run_sweep
 from slippulse.theory.barrier import barrier_depth
+from slippulse_paper.configuration.expand import expand
+from slippulse_paper.configuration.profiles import ExpandedProfiles
+from slippulse_paper.studies import rough_checks, rough_prestress
 from slippulse_paper.studies import rough_theory as theory
 from slippulse_paper.studies.rough_prestress import CELL_MIDDLES, START, end_state
 from slippulse_paper.studies.survival_statistics import (
@@ -72,7 +77,7 @@ def test_the_diffusivity_is_that_of_fields(hurst, factor):
 def test_the_rate_of_barriers_is_that_counted_in_fields():
     """Downcrossings of the mean over the critical depth, in simulated fields."""
     keys = KEYS | {"deviation": 0.35}
-    predicted = theory.barrier_rate(keys)
+    predicted = theory.barrier_rate(keys, "total")
     depth = barrier_depth(0.4, predicted["barrier"], 0.65, 0.1)
     assert predicted["depth"] == depth
     count, length = 0, 0.0
@@ -177,3 +182,40 @@ def test_a_block_that_was_never_released_does_not_slide(reach, stick, is_crack):
     }
     integral = np.cumsum(np.exp(-0.5 * CELL_MIDDLES**2) - 0.3)
     assert end_state(Recorded(arrays, {"end_time": 100.0}), integral)["is_crack"] == is_crack
+
+
+def test_each_ensemble_has_its_own_end_of_track(shipped, monkeypatch):
+    """A pulse that runs through a short track counts as alive, also if another track is longer."""
+    monkeypatch.setattr(rough_checks, "GRID_SEEDS", 1)
+    monkeypatch.setattr(rough_checks, "GRID_SPACINGS", (0.1,))
+    monkeypatch.setattr(rough_checks, "LENGTH_SEEDS", 1)
+    monkeypatch.setattr(rough_checks, "LENGTH_SPACING", 0.1)
+    sweep = small_sweep(shipped, "rough_displacement") | {"duration": {"time": 12.0}}
+    profile = sweep["profiles"][0]
+    rough = profile["rough"] | {"deviation": 0.1, "seed": [1]}
+    tracks = [rough | {"start": -end, "stop": end} for end in (20.0, 8.0)]
+
+    def rows(check, *tracks):
+        return check(sweep | {"profiles": [profile | {"rough": track} for track in tracks]})
+
+    alone = [rows(rough_checks.grid_rows, track)["distance"].sum() for track in tracks]
+    both = rows(rough_checks.grid_rows, *tracks)["distance"].sum()
+    assert both == pytest.approx(sum(alone)) and alone[0] > alone[1] > 0.0
+    halves = rows(rough_checks.length_rows, *tracks)
+    assert halves["stop"].to_list() == [20.0, 40.0, 8.0, 16.0]
+
+
+@pytest.mark.parametrize("release", ["total", "elastic"])
+def test_pulses_are_compared_with_steady_ones_of_their_release_rule(shipped, release):
+    """At a damping ratio of 0.1 the front speeds of both rules differ by 3 %."""
+    sweep = small_sweep(shipped, "rough_settling") | {"release": release}
+    smooth = sweep["profiles"][1]
+    sweep["profiles"] = [smooth | {"rough": smooth["rough"] | {"seed": [1, 2]}}]
+    scenes, samples = expand(sweep)
+    data = run_sweep(scenes, samples, sweep["record"], threads=2)
+    (ensemble,) = rough_prestress.ensembles_of(data, ExpandedProfiles(sweep["profiles"]))
+    numbers = rough_prestress.steady_pulse_comparison(ensemble)
+    assert numbers["slowness_off"] < 0.01
+    row = rough_prestress.displacement_rows(ensemble).iloc[0]
+    expected = barrier_depth(row["level"], row["barrier"], 0.65, 0.1, release)
+    assert row["depth"] == pytest.approx(expected, rel=1e-12)

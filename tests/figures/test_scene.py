@@ -150,6 +150,19 @@ def test_the_pre_stress_goes_on_beyond_the_lattice(drawn):
     assert position[np.argmax(value)] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_legend_of_the_map_lies_beside_a_rupture_to_either_side(drawn, sign):
+    table = drawn["stress"].table
+    table = table.assign(position=sign * table["position"])
+    drawing = figure.draw(table)
+    drawing.draw_without_rendering()
+    (axes,) = (axes for axes in drawing.axes if axes.get_xlabel() == "time $t$")
+    box = axes.get_legend().get_window_extent().transformed(axes.transData.inverted())
+    front = table[table["role"] == "front"]
+    is_covered = front["time"].between(box.x0, box.x1) & front["position"].between(box.y0, box.y1)
+    assert not is_covered.any()
+
+
 def test_numbers_agree_with_theory_where_there_is_one(drawn):
     numbers = drawn["displacement"].numbers.set_index("quantity")
     for quantity in ("front_speed_right", "transition_time", "pulse_peak_velocity", "pulse_slip"):
@@ -310,6 +323,15 @@ def test_blocks_that_no_rupture_reaches_are_drawn_at_rest():
     for rows in space_time.edge_rows(run):
         at_barrier = rows.loc[abs(rows["position"] - 8.0) < 0.4, "time"]
         assert len(at_barrier) > 2 and at_barrier.isna().all()
+
+
+def test_a_map_in_which_nothing_slides_can_be_drawn():
+    pre_stress = sp.Prestress(0.5, 0.5, peak=0.9)
+    scene = sp.Scene("displacement", pre_stress, duration=2.0, dx=0.1, gamma=0.6)
+    run = sp.simulate(scene, sp.Samples(np.linspace(0.0, 2.0, 11), np.linspace(-5.0, 5.0, 21)))
+    rows = space_time.velocity_rows(run).groupby("role")
+    assert (rows.get_group("map")["value"] == 0.0).all()
+    assert rows.get_group("largest")["value"].tolist() == [0.0]
 
 
 def test_the_drawn_pre_stress_ends_with_the_drawn_positions():

@@ -3,8 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 
 from slippulse_paper.figures import fig01_system_sketch
 from slippulse_paper.figures import fig06_burridge_knopoff as figure
@@ -123,3 +125,14 @@ def test_two_pulses_leave_the_held_plate_and_one_the_block_that_is_never_release
     assert (framed["slip"] == 0.0).all() and (framed["prestress"] < 0.0).all()
     frames = [patch for patch in panels["stress"][0].patches if patch.get_linewidth() > 1.0]
     assert len(frames) == part["row"].nunique()
+
+
+@pytest.mark.parametrize(
+    ("level", "ticks"),
+    [(0.15, {0.0, 1.0}), (0.3, {0.0, 0.3, 1.0}), (0.9, {0.0, 1.0}), (-0.7, {-0.7, 0.0, 1.0})],
+)
+def test_a_level_whose_number_would_overlap_another_one_has_no_tick(level, ticks):
+    axes = Figure().subplots()
+    blocks = pd.DataFrame({"x": [0.0, 1.0], "prestress": [level, 1.0], "left": level})
+    figure.draw_prestress_strip(axes, blocks)
+    assert set(axes.get_yticks()) == ticks

@@ -1,12 +1,15 @@
 """The studies show what they claim, in the data that they draw."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import tolerances as tol
 from matplotlib.lines import Line2D
+from selection import small_sweep
 
 import slippulse as sp
 from slippulse.measurement.inference import chi_square_rise, infer_parameters
+from slippulse_paper.studies import arrest_path
 
 deviation = lambda rows, value, exact: np.abs(rows[value] / rows[exact] - 1.0)
 rises = lambda values: bool((np.diff(values) > 0.0).all())
@@ -33,7 +36,11 @@ def test_front_speeds_lie_on_their_lines_and_leaf_springs_slow_fronts_down(draw)
     for _, rows in uniform.query("left >= 0.3 and damping_ratio <= 1").groupby("release"):
         assert len(rows) >= 8 and deviation(rows, "speed", "theory").max() < tol.FRONT_SPEED_STUDY
     ids = {line.get_gid() for line in drawn.figure.findobj(Line2D)}
-    assert {f"theory {ratio:g}" for ratio in uniform["damping_ratio"].unique()} <= ids
+    ratios = [f"{ratio:g}" for ratio in np.sort(uniform["damping_ratio"].unique())]
+    assert {f"theory {ratio}" for ratio in ratios} <= ids
+    # Ratios whose runs are all flagged have an entry, too.
+    (legend,) = drawn.figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ratios
     # Leaf springs, under both rules.
     steady = select(drawn.measured["front_speed_springs"], pulse_state="steady")
     wide = steady[(steady["pulse_width"] >= 4.0 * steady["dx"]) & steady["run_flags"].isna()]
@@ -254,3 +261,36 @@ def test_weak_or_slowly_weakening_friction_ends_pulses_that_stick(draw):
     cases = select(table, role="case").merge(exact, on=keys, suffixes=("", "_exact"))
     finest = select(cases, dx=0.02, regime="sticking pulse")
     assert len(finest) == 4 and deviation(finest, "pulse_slip", "pulse_slip_exact").max() < 0.006
+
+
+@pytest.mark.parametrize(
+    ("figure", "sweep", "changes"),
+    [
+        ("study_pulse_theory", "pulse_damping", {"gamma": 0.3}),
+        ("study_pulse_theory", "pulse_damping", {"release": "elastic"}),
+        ("study_pulse_theory", "continuum_fixed_ratio", {"left": 0.2, "right": 0.2}),
+        ("study_arrest", "arrest", {"left": -0.5}),
+        ("study_arrest", "arrest", {"release": "elastic"}),
+    ],
+)
+def test_runs_with_other_parameters_than_the_exact_curve_are_not_drawn(
+    draw, figure, sweep, changes
+):
+    drawn = draw(figure)
+    runs = drawn.measured[sweep]
+    more_runs = pd.concat([runs, runs.assign(**changes)], ignore_index=True)
+    options = {"measure": {"fraction": drawn.table.get("fraction", pd.Series([0.0])).max()}}
+    tables = [
+        drawn.module.table(drawn.data, drawn.measured | {sweep: rows}, options)
+        for rows in (runs, more_runs)
+    ]
+    pd.testing.assert_frame_equal(*tables)
+
+
+def test_the_exact_path_of_the_left_front_is_that_of_the_first_run_that_stops(shipped):
+    sweep = small_sweep(shipped, "arrest") | {"release": ["total", "elastic"]}
+    only_first, several = (
+        arrest_path.table({}, {}, {"sweeps": {"arrest": sweep | {"left": levels}}})
+        for levels in ([-0.75], [0.5, -0.75, -0.5])
+    )
+    pd.testing.assert_frame_equal(several, only_first)

@@ -1,5 +1,6 @@
 """The layer in the plane beside one dimension: what holds, what does not, and what converges."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -253,6 +254,15 @@ def test_a_held_top_makes_pulses_steady_under_friction_that_recovers(study):
     assert ratios.is_monotonic_increasing and ratios.iloc[-1] > 1.2 * ratios.iloc[0] > 3.6
 
 
+@pytest.mark.parametrize("position", [18.0, 24.0])
+def test_a_pulse_that_has_not_yet_passed_does_not_count_as_dead(position):
+    """At the time 20 the pulse slides at x = 18, and has not yet arrived at x = 24."""
+    layer = replace(layer_healing.THIN, duration=20.0, positions=(position,))
+    pulse = layer_healing.Pulse(tau0=0.56, before=0.56, patch_half_length=2.0)
+    with pytest.raises(ValueError, match=f"before the slip at x = {position:g} is known"):
+        layer_healing.slips(layer, pulse, cells=20)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("half_length", "change"), [(1.5, -0.118), (5.0, 0.109)])
 def test_finer_grids_change_the_growth_in_a_thick_layer_but_not_its_sign(half_length, change):
@@ -300,6 +310,22 @@ def test_a_split_on_a_coarse_grid_alone_makes_a_pulse_undecided(evidence):
     evidence.tables["layer"] = pd.concat([table, extra])
     counts = layer_claims.layer_regimes(evidence, "layer_regimes").counts()
     assert counts == {"held": 5, "failed": 0, "undecided": 2}
+
+
+@pytest.mark.parametrize("splits_on_coarse", [False, True])
+def test_the_text_says_whether_wide_pulses_split_on_the_finest_grid_only(
+    evidence, splits_on_coarse
+):
+    table = evidence.tables["layer"]
+    splits = (table["part"] == "far") & (table["gamma"] < 0.6)
+    if not splits_on_coarse:
+        splits &= table["cells"] == table["cells"][splits].max()
+    evidence.tables["layer"] = table.assign(
+        split_position=table["split_position"].mask(splits, 30.0)
+    )
+    values = layer_claims.layer_regimes(evidence, "layer_regimes").template_values
+    assert values["wide_split_low"] > 0.0
+    assert values["wide_only_on_finest"] == (not splits_on_coarse)
 
 
 def test_pulses_fail_under_pressure_and_with_a_free_top(evidence):

@@ -10,7 +10,9 @@ from slippulse.model.balance import integral
 from slippulse.theory import ArrestingCrack, Rupture, barrier_depth, front_speed
 from slippulse.theory.curve import Point
 from slippulse.theory.fast_front import FastFront
+from slippulse.theory.part import Part
 from slippulse.theory.slowness import slowness
+from slippulse.theory.two_fronts import fast_fronts
 
 # Allowed relative error of T(x).
 ARRIVAL_TOLERANCE = 1e-8
@@ -88,6 +90,26 @@ def test_the_transition_includes_steps_far_from_the_nucleation():
     exact = sp.theory.exact_transition_displacement(profile, 0.01)
     transition = Rupture(profile, 0.01, duration=80.0).transition
     assert tuple(exact) == pytest.approx(tuple(transition), rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("time", "levels"),
+    [
+        (6.088717, (0.4, 0.7, 0.05)),  # Between the arrivals of two waves it is briefly negative.
+        (6.287809, (0.42, 0.7, 0.05)),  # It is positive during a whole period of the leaf springs.
+    ],
+)
+def test_the_transition_is_at_the_first_zero_of_the_velocity(time, levels):
+    positions = (1.9, 3.1, 3.2)
+    steps = [(s * x, tau) for s in (-1.0, 1.0) for x, tau in zip(positions, levels, strict=True)]
+    profile = sp.Prestress(0.03, 0.03, 1e-4, steps=tuple(steps))
+    exact = sp.theory.exact_transition_displacement(profile, 1.0)
+    assert exact.time == pytest.approx(time, rel=1e-6)
+    part = Part(fast_fronts(profile, 0.0, "total", 8.0, 1.0), 1.0, until=8.0)
+    times = np.append(np.linspace(0.01, exact.time - 1e-6, 5000), exact.time + 1e-6)
+    velocity = part.velocity(np.zeros(times.size), times)
+    assert np.all(velocity[:-1] > 0.0)
+    assert velocity[-1] < 0.0
 
 
 @pytest.mark.parametrize(

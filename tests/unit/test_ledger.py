@@ -37,6 +37,7 @@ from slippulse_paper.claims.transition_claims import (
     front_arrest_position,
     judge_rise_with_prestress,
     lattice_runs,
+    takes_longer,
     transition_diverges,
     transition_time_underestimated,
 )
@@ -335,6 +336,13 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
 
 
+def test_a_run_whose_front_has_not_moved_is_undecided():
+    runs = pd.DataFrame({"time": [0.0, 2.0, 1.0], "covered": [-0.0, 1.0, 2.0]})
+    assert takes_longer([runs]).decided == [None, True, False]
+    assert takes_longer([runs, runs.iloc[[0, 1, 1]]]).decided == [None, True, None]
+    assert takes_longer([runs], limit=0.5).decided == [None, False, False]
+
+
 def test_lattice_runs_of_several_release_rules_and_damping_ratios_are_not_mixed():
     lists = {"left": [0.2, 0.4], "release": ["total", "elastic"], "damping_ratio": [0.1, 0.2]}
     finest = pd.MultiIndex.from_product(lists.values(), names=lists).to_frame(index=False)
@@ -367,16 +375,23 @@ def test_a_claim_is_not_testable_if_all_its_runs_are_flagged(judge):
     assert claim.sentence_values().get("holding", []) == []
 
 
-def test_a_pulse_without_a_steady_one_to_compare_with_is_undecided():
+def test_a_pulse_is_undecided_without_a_steady_one_and_if_it_has_not_formed():
     same = {"gamma": 0.65, "damping_ratio": 0.1, "exact_pulse_slip": 1.0, "paper_pulse_slip": 1.0}
     steady = pd.DataFrame({"left": [0.3, 0.6], "pulse_slip": 1.0}).assign(**same)
-    perturbed = pd.DataFrame({"beyond": [0.3, 0.6, 0.9], "pulse_slip": [1.0, 1.1, 1.0]})
+    perturbed = pd.DataFrame(
+        {
+            "beyond": [0.3, 0.6, 0.9, 0.6, 0.6],
+            "pulse_slip": [1.0, 1.1, 1.0, NAN, NAN],
+            # The run of the fourth rupture ends when it is still a crack. The fifth pulse has died.
+            "transition_time": [4.0, 4.0, 4.0, NAN, 4.0],
+        }
+    )
     tables = {PERTURBED: [perturbed.assign(**same)] * 3, UNPERTURBED: [steady] * 3}
     evidence = SimpleNamespace(
         tolerance=lambda id: 0.01, lattices=lambda *simulations: tables[simulations]
     )
     judged = perturbed_pulses_settle(evidence, "perturbed_pulses_settle")
-    assert judged.decided == [True, False, None]
+    assert judged.decided == [True, False, None, None, False]
     assert judged.further["largest deviation of the slip"] == pytest.approx(0.1)
 
 

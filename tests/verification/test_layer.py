@@ -200,6 +200,7 @@ def test_a_pulse_below_a_free_top_has_these_numbers(cells):
         ("weakening", 0.0),
         ("top", "loose"),
         ("cells", 3),
+        ("cells", 20.0),
         ("coupling", -0.1),
         ("trail", 0.0),
         ("beta", -1e-3),

@@ -99,8 +99,9 @@ def _starts_of_runs(
 
 def over_points(sweep: xr.Dataset) -> xr.Dataset:
     """Convert a grid of runs, or a single selected run, to a sweep along the dimension "point"."""
-    # row_start and run_flags have one value for each run. So their dimensions are "point", or the
-    # axes of a grid of runs. For a single selected run they have no dimension.
+    # These two variables (the first block and the flags of each run) have one value for each run.
+    # So their dimensions are "point", or the axes of a grid of runs. For a single selected run they
+    # have no dimension.
     run_dimensions: tuple = ("point",)
     if "row_start" in sweep.variables:
         run_dimensions = sweep["row_start"].dims
@@ -116,9 +117,10 @@ def over_points(sweep: xr.Dataset) -> xr.Dataset:
         if "point" in variable.dims:
             variables[name] = variable.transpose("point", ...)
         elif "block" in variable.dims:
+            # The fields already contain the blocks of all runs, one run after another.
             variables[name] = variable
         else:
-            # The variable has one value, which holds for every run.
+            # The variable does not depend on the run, and is repeated for each of them.
             variables[name] = variable.set_dims({"point": number_of_runs} | variable.sizes)
     return xr.Dataset(variables, attrs=sweep.attrs)
 

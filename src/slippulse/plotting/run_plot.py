@@ -109,7 +109,7 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
     else:
         space_time.draw_edges(map_axes, rows_by_role, rows_by_role["end"]["time"].iloc[0])
     if np.isfinite(run["release_time"]).any():
-        map_axes.legend(loc="upper left")
+        space_time.add_map_legend(map_axes)
     final_slip = rows_by_role["profile"]
     slip_axes.plot(final_slip["value"], final_slip["position"], color=BLUE)
     slip_axes.set_xlabel(with_unit(r"slip $u$", rows_by_role, "slip"))
@@ -139,11 +139,13 @@ def _drawn_table(run: xr.Dataset) -> pd.DataFrame:
 
 def _hatch_unknown(axes: Axes, run: xr.Dataset, rows_by_role: dict[str, pd.DataFrame]) -> None:
     """Hatch the part of the map in which the exact solution is not known."""
-    is_unknown = run["sample_velocity"].isnull().T
+    # Positions are the rows of the map, and times its columns.
+    is_unknown = run["sample_velocity"].isnull().transpose("sample_position", "sample_time")
     # The axes may be in SI units. These factors convert dimensionless numbers to their units.
     time_scale = rows_by_role["end"]["time"].iloc[0] / run.attrs["end_time"]
     drawn_positions = rows_by_role["profile"]["position"]
     position_scale = np.ptp(drawn_positions) / np.ptp(run["x"].values)
+    # Between these levels the mask is True (1).
     hatched: dict = {"levels": [0.5, 1.5], "colors": "none", "hatches": ["///"]}
     times = run["sample_time"] * time_scale
     positions = run["sample_position"] * position_scale

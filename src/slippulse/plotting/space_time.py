@@ -57,6 +57,8 @@ def run_title(rows_by_role: dict[str, pd.DataFrame]) -> str:
     """Return a title with the boundary, pre-stress, damping and flags of a run.
 
     The law of friction is named if it is not that of the paper.
+
+    rows_by_role : rows of the table of the figure; only tables in SI units have the role "unit"
     """
     if "unit" in rows_by_role:
         return _append_remarks(_title_in_si(rows_by_role["parameter"]), rows_by_role)
@@ -115,6 +117,7 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     margin = max(MARGIN_FRACTION * (highest - lowest), run.attrs["dx"])
     sample_count = run.sizes.get("sample_position", 0)
     if sample_count < 2:
+        # A single sample covers no range.
         return float(lowest - margin), float(highest + margin)
     first_sample, last_sample = run["sample_position"].values[[0, -1]]
     # The margin is at least three intervals between samples wide, so that it contains samples.
@@ -127,7 +130,7 @@ def drawn_range(run: xr.Dataset) -> tuple[float, float]:
 def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     """Return the sampled slip velocity (role map), and its largest value (role largest).
 
-    Most samples that are 0 are left out.
+    At most MAP_SAMPLES positions and times are kept, and most samples that are 0 are left out.
     """
     lower, upper = drawn_range(run)
     x, times = run["sample_position"].values, run["sample_time"].values
@@ -137,9 +140,11 @@ def velocity_rows(run: xr.Dataset) -> pd.DataFrame:
     kept_times = spaced_indices(times.size, MAP_SAMPLES)
     # These three arrays have one row for each time and one column for each position.
     time, position = np.meshgrid(times[kept_times], x[kept_positions], indexing="ij")
-    # Rounding to four digits of the largest velocity keeps the table small. A colour shows fewer.
+    # Rounding to five digits of the largest velocity keeps the table small. A colour shows fewer.
     largest_velocity = np.nanmax(velocity)
-    decimals = 4 - int(np.floor(np.log10(largest_velocity)))
+    decimals = 0
+    if largest_velocity > 0.0:
+        decimals = 4 - int(np.floor(np.log10(largest_velocity)))
     rounded_velocity = velocity[np.ix_(kept_times, kept_positions)].round(decimals)
     # The first row and the first column are written in full, because they define the grid.
     is_written = rounded_velocity != 0.0
@@ -204,6 +209,7 @@ def draw_profile(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     if in_si:
         _mark_strengths(axes, rows_by_role["strength"])
     else:
+        # Kinetic friction is at 0.
         axes.axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.plot(rows["value"], rows["position"], color=BLACK)
     axes.margins(x=0.12)
@@ -249,6 +255,18 @@ def draw_map(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     axes.figure.colorbar(image, ax=axes, pad=0.02, aspect=25).set_label(label)
 
 
+def add_map_legend(axes: Axes) -> None:
+    """Add a legend to the map: below a rupture that runs mainly to the left, else above.
+
+    There the map is free at early times. If the legend still covers a part of the rupture, its pale
+    ground keeps it readable.
+    """
+    lowest, highest = axes.get_ylim()
+    runs_to_the_left = -lowest > 1.2 * highest
+    look: Look = {"frameon": True, "edgecolor": "none"}
+    axes.legend(loc="lower left" if runs_to_the_left else "upper left", **look)
+
+
 def draw_halves(axes: Axes, rows: pd.DataFrame, half: str) -> None:
     """Draw one map of slip velocity above x = 0 and another one below.
 
@@ -282,6 +300,7 @@ def draw_edges(axes: Axes, rows_by_role: dict[str, pd.DataFrame], end: float) ->
     # Beyond the front, and between two ruptures (NaN), blocks are at rest until the end.
     release = np.interp(positions, front["position"], front["time"], left=end, right=end)
     release = np.nan_to_num(release, nan=end)
+    # With this zorder, white lies above the map and below the lines.
     axes.fill_betweenx(positions, 0.0, release, color="white", linewidth=0.0, zorder=1.5)
     axes.plot(front["time"], front["position"], color=BLACK, linewidth=0.8, label="front")
     x, stick = trailing["position"], trailing["time"].to_numpy()

@@ -320,7 +320,8 @@ def _save_png(canvas: FigureCanvasAgg, path: Path, source: str | None) -> None:
     if source:
         comments.add_text("Comment", source)
     pixels = np.asarray(canvas.buffer_rgba())
-    # Most pixels are white. Without them, the 255 other colours are found in half of the time.
+    # Most pixels are white. Without them, the 255 other colours are found in half of the time. The
+    # four bytes of a pixel are compared as one integer.
     is_coloured = pixels.view(np.uint32)[..., 0] != WHITE_PIXEL
     # All coloured pixels stand in one row.
     coloured = Image.fromarray(pixels[np.newaxis, is_coloured]).convert("RGB")

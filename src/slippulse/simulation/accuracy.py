@@ -144,10 +144,12 @@ def settings_for(
     check_number("damping_ratio", damping_ratio, at_least=0.0, at_most=MAX_DAMPING_RATIO)
     # Convert numbers of other types, such as integers or NumPy scalars.
     gamma, damping_ratio = float(gamma), float(damping_ratio)
+    # The smallest width of a Gaussian, or of the nucleation in a table.
     peak_width = prestress.narrowest
     if prestress.points:
         peak_width = min(peak_width, _nucleation_width(prestress))
-    # The step and the scatter of a grid study need the rest of the error.
+    # The time step needs the rest of the error, and so does the scatter of the error that a user
+    # estimates from runs on several lattices.
     demand = Demand(
         error=SPACING_FRACTION * float(accuracy),
         levels=_levels(prestress),
@@ -161,7 +163,7 @@ def settings_for(
         spacings = _spacings_with_springs(demand)
     else:
         spacings = _spacings_without_springs(demand, prestress)
-    # The spacing is rounded to three digits.
+    # The spacing is at most 1 (one thickness H), and is rounded to three digits.
     dx = float(f"{min(1.0, *spacings):.3g}")
     step = min(LARGEST_STEP, choose_step("localised", TAYLOR_ORDER, damping_ratio, gamma * dx**2))
     settings: dict[str, Any] = {"dx": dx, "beta": damping_ratio * dx, "max_step": step}
@@ -185,7 +187,8 @@ def _levels(prestress: Prestress) -> list[float]:
 def _levels_of_table(prestress: Prestress) -> list[float]:
     """Return some levels, from low to high, of the pre-stress of a table in which fronts run."""
     tau = np.array([tau for _, tau in prestress.points])
-    # At lower pre-stress, no accuracy is promised. At 1 or more, there is no front.
+    # At lower pre-stress, no accuracy is promised. At 1 or more, all blocks slide from t = 0 on,
+    # and there is no front.
     covered = tau[(tau >= LOWEST_PRESTRESS) & (tau < 1.0)]
     if not covered.size:
         return []
@@ -200,10 +203,12 @@ def _nucleation_width(prestress: Prestress) -> float:
     """
     x, tau = prestress.point_arrays
     highest_point, far_level = int(np.argmax(tau)), max(prestress.left, prestress.right)
+    # Only a pre-stress of 1 starts a rupture.
     if tau[highest_point] < 1.0:
         return math.inf
     has_fallen = tau <= far_level + math.exp(-0.5) * (tau[highest_point] - far_level)
     distances = np.abs(x[has_fallen] - x[highest_point])
+    # If the far level is as high as the maximum, the highest point itself is among these points.
     return float(np.min(distances[distances > 0.0], initial=math.inf))
 
 
@@ -216,7 +221,7 @@ def _spacings_with_springs(demand: Demand) -> list[float]:
     """
     # The pre-stress varies over the first of these lengths, and leaf springs act over the second.
     nucleation_length = min(demand.peak_width, 1.0 / math.sqrt(demand.gamma))
-    # The nucleation causes this part of the errors of T_trans and L_trans. It is divided by dx.
+    # The error of T_trans and L_trans because of the nucleation, divided by dx.
     nucleation_error_per_dx = NUCLEATION_ERROR * (1.0 + demand.damping_ratio) / nucleation_length
     spacings = [nucleation_length / MIN_BLOCKS, demand.error / nucleation_error_per_dx]
     for level in demand.levels:
@@ -267,6 +272,7 @@ def _distances_to_zero(levels: list[float], prestress: Prestress) -> list[float]
     if prestress.points:
         distances = _distances_to_zeros_of_table(prestress)
         return [float(np.min(distances))] if distances.size else []
+    # Without a Gaussian (width None), the pre-stress falls to 0 at no finite distance.
     width, peak = prestress.width or math.inf, prestress.peak
     # Where level + (peak - level) exp(-x^2 / 2 width^2) is 0.
     negative_levels = [level for level in levels if level < 0.0 < peak]

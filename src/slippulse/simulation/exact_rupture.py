@@ -5,7 +5,10 @@ from ..theory.rupture import Rupture
 
 
 def exact_rupture(scene: Scene) -> Rupture:
-    """Return the exact rupture of a scene in the limit dx -> 0 at its damping ratio."""
+    """Return the exact rupture of a scene in the limit dx -> 0 at its damping ratio.
+
+    Raises ValueError if the scene uses an extra term, which the paper's equation does not have.
+    """
     refuse_extra_terms(vars(scene), "for the exact rupture, which has no extra terms")
     return Rupture(
         prestress=scene.prestress,

@@ -61,6 +61,7 @@ def flags_of(scene: Scene, solution: Solution) -> dict:
         largest_velocity = max(1.0, float(np.max(solution.slip_velocity)))
         lowest_allowed = -MAX_NEGATIVE_VELOCITY[scene.scheme] * largest_velocity
         flags |= {
+            # No blocks means that there is no pulse.
             "unresolved_pulse": 0 < blocks < scene.resolved_blocks,
             "died_out": died_out(solution),
             "first_stick_at_front": first_stick_at_front(scene, solution),
@@ -133,7 +134,7 @@ def front_restarted(scene: Scene, solution: Solution) -> bool:
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
         return False
     for side in (1, -1):
-        release_times = _outwards(solution, solution.release_time, side)
+        release_times = _values_outwards(solution, solution.release_time, side)
         released = release_times[np.isfinite(release_times)]
         # The front reaches a block when this block and all blocks before it have been released.
         arrival_times = np.maximum.accumulate(released)
@@ -210,17 +211,17 @@ def died_out(solution: Solution) -> bool:
     is_released = np.isfinite(solution.release_time)
     is_sliding = is_released & ~np.isfinite(solution.stick_time)
     for side in (1, -1):
-        released_blocks = np.flatnonzero(_outwards(solution, is_released, side))
-        has_stopped = not np.any(_outwards(solution, is_sliding, side))
+        released_blocks = np.flatnonzero(_values_outwards(solution, is_released, side))
+        has_stopped = not np.any(_values_outwards(solution, is_sliding, side))
         if released_blocks.size and has_stopped:
             first_ahead = released_blocks[-1] + 1
-            prestress_ahead = _outwards(solution, solution.prestress, side)[first_ahead:]
+            prestress_ahead = _values_outwards(solution, solution.prestress, side)[first_ahead:]
             if prestress_ahead.size and prestress_ahead[0] > 0.0:
                 return True
     return False
 
 
-def _outwards(solution: Solution, values: np.ndarray, side: int) -> np.ndarray:
+def _values_outwards(solution: Solution, values: np.ndarray, side: int) -> np.ndarray:
     """Return the values of the blocks on one side, in order from x = 0 outwards.
 
     side : 1 for the right side and -1 for the left one

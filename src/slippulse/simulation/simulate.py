@@ -179,6 +179,7 @@ def _check_scenes(scenes: Sequence[Scene]) -> None:
     is_list = isinstance(scenes, Sequence) and len(scenes) > 0
     is_valid = is_list and all(isinstance(scene, Scene) for scene in scenes)
     check_that(is_valid, "scenes", scenes, "a list of Scenes, at least one")
+    # Exact solutions are computed one after another, but lattices in several threads.
     schemes = sorted({scene.scheme for scene in scenes})
     is_compatible = "continuum" not in schemes or len(schemes) == 1
     check_that(is_compatible, "scheme", schemes, "'continuum' for all scenes, or for no scene")

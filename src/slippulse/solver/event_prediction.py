@@ -139,22 +139,24 @@ def predict_release(medium, motion, prediction, block, now, step_end, top):
     slip = w[SLIP, block] + motion.event_slip[block]
     elastic = elastic_force(medium, motion, block)
     coefficients[0] = elastic - medium.leaf_stiffness * slip + motion.tau[block] - 1.0
-    # The block is at rest, so that only the motion of its two neighbours changes its stress. The
-    # coefficient of power k is derivative k of the stress, divided by k!. In the loop,
-    # ``inverse_factorial`` is 1/(k - 1)! and then 1/k!.
+    # The block is at rest, so that only the motion of its two neighbours changes its stress, by
+    # their slip and, through damping, by their velocities. The coefficient of power k is derivative
+    # k of the stress, divided by k!. In the loop, ``inverse_factorial`` is 1/(k - 1)!, then 1/k!.
     inverse_factorial, damping = 1.0, 0.0
+    # With beta < 0, the sign that the paper prints, damping is not part of the stress here.
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
     for k in range(1, top + 1):
         neighbours = w[k, block - 1] + w[k, block + 1]
-        # The damping force contains the velocity, whose derivative k - 1 is derivative k of slip.
+        # Derivative k - 1 of the velocity is derivative k of slip.
         coefficients[k - 1] += inverse_factorial * damping * neighbours
         inverse_factorial *= INVERSE_INTEGERS[k]
         coefficients[k] = inverse_factorial * medium.inverse_dx2 * neighbours
     excess_stress = evaluate_polynomial(coefficients, top, now)
     if excess_stress >= 0.0:
         return now, excess_stress + 1.0
-    # The positive terms alone bound the rise of the stress. Most searches for a root end here.
+    # The positive terms alone, at ``step_end``, bound the rise of the stress. In most calls they
+    # rule out a release, and no root is searched for.
     largest_rise = 0.0
     for k in range(top, 0, -1):
         largest_rise = step_end * (max(coefficients[k], 0.0) + largest_rise)
@@ -270,22 +272,21 @@ def predict_stick(coefficients, slopes, degree, end_velocity, now, step_end):
         if evaluate_polynomial(coefficients, degree, turn) >= -ROUNDING_TOLERANCE:
             return math.inf
         return find_crossing(coefficients, degree, now, turn)
-    if end_velocity >= 0.0:
-        # The velocity at the end is 0 apart from rounding. If it is 0 now as well, the block was
-        # released just before the end of the step, and does not stick.
-        if abs(velocity_now) <= ROUNDING_TOLERANCE:
-            return math.inf
+    if end_velocity >= 0.0 and abs(velocity_now) <= ROUNDING_TOLERANCE:
+        # The velocity is 0 now and at the end, apart from rounding. The block was released just
+        # before the end of the step, and does not stick.
+        return math.inf
+    if end_velocity >= 0.0 or velocity_now > ROUNDING_TOLERANCE:
+        # The velocity falls from a positive value to 0, apart from rounding, or below.
         return find_crossing(coefficients, degree, now, step_end)
-    # From here on the velocity at the end is negative, so that the block sticks.
-    if velocity_now > ROUNDING_TOLERANCE:
-        return find_crossing(coefficients, degree, now, step_end)
-    # The velocity is 0 now, apart from rounding. If it rises, the block is released now, and sticks
-    # after the velocity has passed its maximum. To find this turning point, the coefficients of the
-    # slope are computed, too.
+    # The velocity is 0 now, apart from rounding, and negative at the end. If it rises now, the
+    # block has just been released, and sticks after its velocity has passed the maximum.
+    # `find_turning_point` also fills ``slopes``.
     turn = find_turning_point(coefficients, slopes, degree, now, step_end)
-    if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
+    is_rising = evaluate_polynomial(slopes, degree - 1, now) > 0.0
+    if is_rising:
         return find_crossing(coefficients, degree, turn, step_end)
-    # If it falls, the block sticks as soon as the velocity is not positive.
+    # Otherwise the block sticks at once, or as soon as the small positive velocity is gone.
     return find_crossing(coefficients, degree, now, step_end) if velocity_now > 0.0 else now
 
 
@@ -310,10 +311,11 @@ def predict_sticks(motion, prediction, first, last, may_stick_count, now, step_e
     w, end_velocity = motion.derivatives, motion.end_velocity
     coefficients = prediction.coefficients
     for i in range(first, last):
-        # A block may stick if its velocity is negative at the end of the step, or if the tangent of
-        # its velocity is. A velocity that is negative only in between has such a tangent.
-        tangent_after = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
-        if end_velocity[i] >= 0.0 and tangent_after >= 0.0:
+        # A block may stick if its velocity is negative at the end of the step. If it is negative
+        # only in between, it curves upwards, and its tangent at the start of the step is negative
+        # at the end.
+        tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
+        if end_velocity[i] >= 0.0 and tangent_at_end >= 0.0:
             continue
         if not math.isfinite(end_velocity[i]):
             return False
@@ -345,8 +347,8 @@ def predict_law_kink(coefficients, slopes, degree, now, step_end):
     """
     if evaluate_polynomial(coefficients, degree, now) < -ROUNDING_TOLERANCE:
         return find_threshold_crossing(coefficients, slopes, degree, now, step_end)
-    # The block is at the kink now. If the polynomial rises, the block passes it at this instant. To
-    # find its turning point, the coefficients of its slope are computed, too.
+    # The block is at the kink now. If the polynomial rises, the block passes it at this instant.
+    # `find_turning_point` also fills ``slopes``.
     turn = find_turning_point(coefficients, slopes, degree, now, step_end)
     if evaluate_polynomial(slopes, degree - 1, now) > 0.0:
         return now
@@ -369,22 +371,23 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
         w, coefficients = motion.derivatives, prediction.coefficients
         degree = top - law_kink.argument_row
         for i in range(first, last):
-            # The argument reaches the kink from below, or from above if the block is beyond it.
+            # Before the kink, the argument reaches it by rising. Beyond the kink, where the slope
+            # is 0, it would have to fall, which the sign -1 turns into a rise.
             is_before_kink = motion.weakening_slope[i] > 0.0
             sign = 1.0 if is_before_kink else -1.0
             if law_kink.argument_row == SLIP:
                 # Slip only grows, so that it does not come back to the kink.
                 is_out_of_reach = not is_before_kink
             else:
-                # A slip rate that passes the kink only for a part of the step has a tangent at the
-                # start of the step that passes it.
-                tangent_after = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
-                farthest = max(sign * motion.end_velocity[i], sign * tangent_after)
-                is_out_of_reach = farthest < sign * law_kink.argument_at_kink
+                # The slip rate is beyond the kink at the end of the step or, if it is so only in
+                # between and turns back, its tangent at the start of the step is beyond at the end.
+                tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
+                largest = max(sign * motion.end_velocity[i], sign * tangent_at_end)
+                is_out_of_reach = largest < sign * law_kink.argument_at_kink
             if is_out_of_reach:
                 continue
-            # The Taylor polynomial of the argument minus its value at the kink, times the sign, so
-            # that it rises to 0 in either case. Its term of power k is divided by k!.
+            # The Taylor polynomial of the argument minus its value at the kink, times the sign. It
+            # rises to 0 at the kink. Its coefficient of power k is derivative k, divided by k!.
             signed_inverse_factorial = sign
             for k in range(degree + 1):
                 coefficients[k] = signed_inverse_factorial * w[k + law_kink.argument_row, i]
@@ -392,7 +395,7 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
             # Slip is counted from the release. In a law of slip rate, slip_at_release is 0.
             argument_at_kink = motion.slip_at_release[i] + law_kink.argument_at_kink
             if law_kink.argument_row == SLIP:
-                # The table of derivatives does not contain the slip by events of the step yet.
+                # Slip in ``w`` does not contain the slip by events of the step yet.
                 argument_at_kink -= motion.event_slip[i]
             coefficients[0] -= sign * argument_at_kink
             time_of_kink = predict_law_kink(coefficients, prediction.slopes, degree, now, step_end)

@@ -93,6 +93,7 @@ def start_sliding(block_change, medium, motion, block, now, top):
     # two above ``top`` only make the others more exact when they are advanced in time.
     for k in range(1, top + 1):
         block_change[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
+        # Row ``top`` is the last row of w.
         if k < top:
             block_change[k + 2] += damping * (w[k + 1, block - 1] + w[k + 1, block + 1])
     # Advance them from the start of the step to the time of the release.
@@ -109,8 +110,9 @@ def hold_block(block_change, w, event_slip, block, now, top):
     w : time derivatives of slip at the start of the step; those of the block are set to 0
     event_slip : slip by events of the step; the slip of the block in the step until now is added
     """
-    # Move the derivatives of the block from w to block_change, and advance them to the time
-    # ``now``. Derivative 0 begins as 0, and becomes the slip since the start of the step.
+    # Move the derivatives of the block from w to block_change, and replace derivatives 0 to ``top``
+    # there by their values at the time ``now``. Derivative 0 begins as 0, and becomes the slip
+    # since the start of the step.
     block_change[SLIP] = 0.0
     for k in range(1, top + 1):
         block_change[k] = w[k, block]
@@ -183,15 +185,15 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         if medium.alpha != 0.0:
             subtract_rate_strengthening(rows, k, first, last, medium.alpha)
         add_weakening(rows, k, first, last, block_of_column_0, motion, medium.law_kink)
-        # A block that stuck is held, so the change of its neighbours does not move it. Any other
-        # block of an event is moved by its neighbours, too.
+        # A block that stuck is held, so block_change is its whole change. A block that slides also
+        # feels the changes of its neighbours, computed above.
         if event.is_stick:
             rows[k, CENTRE_COLUMN] = block_change[k]
         else:
             rows[k, CENTRE_COLUMN] += block_change[k]
     if event.is_stick:
-        # `hold_block` has set the motion of the block that stuck to 0. Only the change of the other
-        # blocks is still to be added.
+        # The lattice already has the new motion of the block that stuck, because `hold_block` has
+        # set it to 0. Only the changes of the other blocks are still to be added.
         for k in range(2, top + 1):
             rows[k, CENTRE_COLUMN] = 0.0
 
@@ -258,7 +260,8 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
     if medium.beta <= 0.0:
         return 0.0
     # At a release or a stick the velocity of the block is 0, and only its own acceleration changes.
-    # In both pairs, dv da is therefore minus the velocity of the neighbour times this change.
+    # In both pairs, dv da is therefore minus the velocity of the neighbour times this change. (At a
+    # kink of the law the change is 0.)
     neighbour_velocities = velocity_at(w, block + 1, top, now)
     # The left pair of the block on the axis is the mirror image of the right one.
     is_on_axis = medium.is_mirrored and block == 1
@@ -284,15 +287,16 @@ def update_mirror_image(motion, top):
 def predict_events_again(medium, motion, segments, prediction, first, last, now, step_end):
     """Predict the events of blocks first..last-1, whose motion an event has changed at ``now``.
 
-    Returns two values: False if a velocity is not finite at ``step_end``, and the lowest stress of
-    the blocks at rest for which a release was predicted again.
+    Returns two values: False if a velocity is not finite at ``step_end``, and the lowest stress at
+    ``now`` of the blocks at rest for which a release was predicted.
     """
     top = motion.derivatives.shape[0] - 1
     # The motion of these blocks also changes the stress of the block on either side of them.
     lowest_stress = predict_releases(
         medium, motion, segments, prediction, first - 1, last + 1, now, step_end
     )
-    # Replace the sticks and kinks that were predicted before the event. Every block may stick.
+    # Replace the sticks and kinks that were predicted before the event. Any number of these blocks
+    # may stick.
     drop_predicted_events(prediction, first, last)
     may_stick_count = last - first
     is_finite = predict_sticks(motion, prediction, first, last, may_stick_count, now, step_end, top)

@@ -57,7 +57,7 @@ def combine_laws(laws: Sequence[type[Friction]]):
 
     @kernel_function()
     def friction(law, slip, velocity, parameter_1, parameter_2):
-        """Return the friction of the law whose position in the list is ``law``."""
+        """Return the friction of law number ``law`` in the list: its first or a later one."""
         if law == 0:
             return friction_of_first(slip, velocity, parameter_1, parameter_2)
         return friction_of_others(law - 1, slip, velocity, parameter_1, parameter_2)
@@ -102,7 +102,10 @@ def compute_forces(medium, motion, sliding, history, t, first, last):
 
 @kernel_function()
 def find_sliding_range(sliding, first, last):
-    """Return the first sliding block of first..last-1 and the block after the last sliding one."""
+    """Return the first sliding block of first..last-1 and the block after the last sliding one.
+
+    At least one of these blocks slides.
+    """
     while not sliding[first]:
         first += 1
     while not sliding[last - 1]:
@@ -228,6 +231,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         start = tally.time
         if start >= limits.end_time:
             return END_REACHED
+        # A front has come near an end of the lattice if the block at this distance from it slides.
         if sliding[size - EDGE_BLOCKS] or (sliding[EDGE_BLOCKS - 1] and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
         dt, end = next_step(limits, start)

@@ -39,7 +39,8 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
     # The exact solution covers only friction that is 0, or linear in slip velocity.
     is_linear = "continuum" in friction.schemes
     # Both schemes solve linear friction by its constant alpha. The Taylor step also solves
-    # piecewise linear friction, by the constants of its kink, and no other laws.
+    # piecewise linear friction, by the constants of its kink, and no other laws. The law number 0
+    # means that no other law is needed.
     if localised or is_linear:
         return FrictionConstants(
             alpha=traits.linear_rate,
@@ -66,7 +67,7 @@ def begin_weakening(motion, law_kink, block):
     law_kink : constants of a piecewise linear law; None for other laws, which need no start
     """
     if law_kink is not None:
-        # The factor is 0 in the zone without friction, and otherwise 1.
+        # The factor is 0 in the zone of nucleation, which has no friction, and 1 elsewhere.
         weakening_slope = motion.law_factor[block] * law_kink.weakening_slope
         motion.weakening_slope[block] = weakening_slope
         if law_kink.argument_row == SLIP:
@@ -107,7 +108,8 @@ def friction_at_stick(motion, law_kink, block):
 def switch_weakening(motion, law_kink, block):
     """Stop the weakening of a block that passes the kink, or start it again on the way back."""
     if law_kink is not None:
-        # The slope of the block is either 0 or that of the law, and takes the other value.
+        # The slope of the block is either 0 or that of the law, and takes the other value. (Where a
+        # law has no friction, blocks have no kink.)
         motion.weakening_slope[block] = law_kink.weakening_slope - motion.weakening_slope[block]
 
 
@@ -128,7 +130,7 @@ def add_weakening(w, k, first, last, block_of_column_0, motion, law_kink):
 
 
 @kernel_function(inline=True)
-def subtract_friction(motion, first, last, law_kink):
+def subtract_piecewise_linear_friction(motion, first, last, law_kink):
     """Subtract piecewise linear friction from the accelerations of blocks first..last-1."""
     if law_kink is not None:
         w = motion.derivatives

@@ -92,8 +92,9 @@ class Lattice:
         numbers = (np.sign(in_spacings) * np.floor(np.abs(in_spacings) + 0.5)).astype(np.int64)
         self.sampled_numbers = np.abs(numbers) if self.is_mirrored else numbers
         slip, velocity = np.zeros((2, samples.times.size, samples.positions.size))
-        # `_extend` replaces the numbers of the blocks by their positions in the arrays.
-        self.recorder = arrays.Recorder(samples.times.copy(), numbers, slip, velocity)
+        # `_extend` enters the sampled blocks, by their positions in its arrays.
+        no_blocks = np.full_like(numbers, -1)
+        self.recorder = arrays.Recorder(samples.times.copy(), no_blocks, slip, velocity)
 
     def _cover_nucleation(self) -> None:
         """Extend the lattice over all blocks that can be released at t = 0.
@@ -101,6 +102,8 @@ class Lattice:
         Some of them may lie at distant bumps of the pre-stress.
         """
         blocks_of_reach = int(np.ceil(self.scene.prestress.nucleation_reach / self.scene.dx))
+        # The kernel needs EDGE_BLOCKS blocks beyond them on each side, and the last line adds some
+        # more for safety.
         blocks_per_side = blocks_of_reach + arrays.EDGE_BLOCKS
         blocks_needed = blocks_per_side if self.is_mirrored else 2 * blocks_per_side
         while blocks_needed > self.size - arrays.EDGE_BLOCKS:
@@ -194,7 +197,10 @@ class Lattice:
         self.largest_force = growth * (largest_prestress + traits.max_drive)
 
     def _advance(self, limits: arrays.Limits) -> int:
-        """Call the kernel, and return the reason why it stopped."""
+        """Advance the lattice in one call of the kernel, and return the reason why it stopped.
+
+        limits : size of the steps, and the conditions that end the call
+        """
         # The first block of each segment of sliding blocks, and the block after its last one.
         edges = np.flatnonzero(np.diff(self.sliding, prepend=False, append=False))
         segments = arrays.make_segments(self.size)
@@ -230,6 +236,7 @@ class Lattice:
         progress between two calls.
         """
         scene = self.scene
+        # The localised scheme updates only the blocks that slide.
         updates_per_step = np.count_nonzero(self.sliding) if self.localised else self.size
         steps = max(MAX_CALL_UPDATES / max(updates_per_step, 1), MIN_CALL_STEPS)
         return arrays.Limits(

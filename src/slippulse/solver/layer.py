@@ -80,7 +80,7 @@ class LayerScene:
             check_number(name, getattr(self, name), above=0.0)
         for name in ("nucleation", "coupling", "rate", "beta"):
             check_number(name, getattr(self, name), at_least=0.0)
-        check_number("cells", self.cells, at_least=4)
+        check_number("cells", self.cells, integer=True, at_least=4)
         check_that(self.trail > 0.0, "trail", self.trail, "a positive number")
         largest = MAX_DAMPING_RATIO / self.cells
         allowed = f"a number <= {largest:.4g}, above which a grid of {self.cells} cells is unstable"
@@ -308,12 +308,13 @@ def advance_node(elastic, fields, fault, i, dt, time):
             # The load is interpolated linearly in time between two steps.
             delay = excess / (excess - excess_before) if excess_before < 0.0 else 0.0
             fault.release_time[i] = time - delay * dt
-    # A force changes the velocity of a whole cell by dt/h times the force. Half a cell has half the
-    # mass, so that its velocity changes twice as much.
+    # The node slides. A force changes the velocity of a whole cell by dt/h times the force. Half a
+    # cell has half the mass, so that its velocity changes twice as much.
     velocity_before = fields.vx[0, i]
     velocity = velocity_before + 2.0 * elastic.dt_over_h * (load - strength)
     if velocity <= 0.0:
-        # A node that is released without excess load has not moved, and does not stick.
+        # The node sticks. This is recorded unless the node has not moved, because it was released
+        # at this step without excess load.
         if velocity_before > 0.0 and np.isnan(fault.stick_time[i]):
             # The velocity is interpolated linearly from half a step before to half a step after.
             fraction = velocity_before / (velocity_before - velocity)
@@ -349,15 +350,15 @@ def add_damping(elastic, earlier, fields, total, first, last):
 
     earlier : stresses one step before, which are replaced by those of ``fields``
     """
-    pairs = (
+    stresses = (
         (earlier.sxx, fields.sxx, total.sxx),
         (earlier.syy, fields.syy, total.syy),
         (earlier.sxy, fields.sxy, total.sxy),
     )
-    for before, now, sum_of_both in pairs:
+    for before, now, with_damping in stresses:
         for j in range(now.shape[0]):
             for i in range(first - 1, last + 1):
-                sum_of_both[j, i] = now[j, i] + elastic.damping * (now[j, i] - before[j, i])
+                with_damping[j, i] = now[j, i] + elastic.damping * (now[j, i] - before[j, i])
                 before[j, i] = now[j, i]
 
 
@@ -414,17 +415,18 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
     # The first of its three groups of fields is ``fields``, which `advance_layer` changes in place.
     damped = damped_fields(elastic, fields)
     advance_layer(elastic, damped, fault, dt, (0, steps - 1), columns)
-    # The energy is computed at the time of the velocities that are copied here. This needs the
-    # stresses half a step before, which are copied as well, and those half a step after, which the
-    # last step computes.
+    # The energy is computed one step before the end, at the time of the velocities that are copied
+    # here. This needs the stresses half a step before, which are copied as well, and those half a
+    # step after, which the last step computes.
     earlier = Fields._make(array.copy() for array in fields)
-    work_of_prestress, work_without_friction = fault.work.tolist()
+    # The net work is the work of the pre-stress minus that of friction.
+    work_of_prestress, net_work = fault.work.tolist()
     advance_layer(elastic, damped, fault, dt, (steps - 1, steps), columns)
     energy = stored_energy(elastic, earlier, fields) * h
     # The energy balance holds only without damping, and if all columns are advanced.
     residual = math.nan
     if scene.beta == 0.0 and math.isinf(scene.trail):
-        missing = abs(energy - work_without_friction)
+        missing = abs(energy - net_work)
         # Without work nothing has moved.
         residual = missing / work_of_prestress if work_of_prestress else 0.0
     return LayerRun(
@@ -438,20 +440,21 @@ def simulate_layer(scene: LayerScene) -> LayerRun:
 
 
 def damped_fields(elastic: Elastic, fields: Fields) -> DampedFields:
-    """Return three groups of fields: with elastic stresses, with those one step before, with total.
+    """Return the fields of a layer at the start, three times if it is damped.
 
-    The total stresses include damping, which is computed from the change of the elastic stresses in
-    a step. All three groups share the velocities, and without damping also the stresses.
+    Damping is computed from the change of the elastic stresses in a step. A damped layer therefore
+    needs its elastic stresses, those of one step before, and total stresses, which include damping.
+    All three share the velocities.
     """
     if elastic.damping == 0.0:
         return DampedFields(elastic=fields, earlier=fields, total=fields)
     return DampedFields(
-        elastic=fields, earlier=with_own_stresses(fields), total=with_own_stresses(fields)
+        elastic=fields, earlier=with_copied_stresses(fields), total=with_copied_stresses(fields)
     )
 
 
-def with_own_stresses(fields: Fields) -> Fields:
-    """Return fields that share the velocities with others, and have a copy of their stresses."""
+def with_copied_stresses(fields: Fields) -> Fields:
+    """Return fields that share the given velocities, and have copies of the given stresses."""
     return fields._replace(sxx=fields.sxx.copy(), syy=fields.syy.copy(), sxy=fields.sxy.copy())
 
 
@@ -481,16 +484,17 @@ def _elastic_constants(scene: LayerScene, dt_over_h: float) -> Elastic:
 
     dt_over_h : time step divided by the side of a cell
     """
-    # Stiffness of s_yy: 0 at a free top, where the normal stress stays 0, and 1 at all other rows.
+    # Modulus of s_yy: 0 on a free top row, where the normal stress stays 0, and 1 on all others.
     normal = np.ones(scene.cells + 1)
     normal[-1] = 1.0 if scene.top == "held" else 0.0
-    # The bottom row has only a value above it, and the top row only one below it. This value counts
-    # twice, since these rows have half the height.
+    # Weights of the values of v_y and s_xy half a cell above and below each row. The bottom row has
+    # only a value above it, and the top row only one below it. This value counts twice, since these
+    # rows have half the height.
     above, below = np.ones(scene.cells + 1), np.ones(scene.cells + 1)
     above[0], above[-1] = 2.0, 0.0
     below[0], below[-1] = 0.0, 2.0
-    # Stiffness of a normal stress against strain in the other direction. On a free row, s_yy = 0
-    # makes ``direct``, the stiffness of s_xx, smaller than 1.
+    # Modulus of a normal stress for strain in the other direction. The modulus of s_xx for strain
+    # in its own direction, ``direct``, is 1, but less on a free row, where s_yy stays 0.
     lateral = 1.0 - scene.gamma
     # The top row moves unless it is held.
     moving_rows = scene.cells + 1 if scene.boundary == "stress" else scene.cells
@@ -530,7 +534,8 @@ def _fields_at_rest(scene: LayerScene, size: int) -> Fields:
 def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
     """Return the state of the bottom before t = 0, at nodes of positions x.
 
-    All nodes are at rest. Friction is 0 at the nodes of the nucleus, where the rupture starts.
+    All nodes are at rest. Friction is 0 at the nodes of the nucleus, where the rupture starts,
+    whatever their value of ``strength``.
     """
     tau = scene.prestress(x)
     # A quarter of a cell is added, so that rounding does not decide about the outermost node.
@@ -544,8 +549,9 @@ def _fault_at_rest(scene: LayerScene, x: np.ndarray) -> Fault:
         strength=np.ones(x.size),
         release_time=np.full(x.size, np.nan),
         stick_time=np.full(x.size, np.nan),
-        # Shear stress minus strength, which is 0 in the nucleus and 1 elsewhere.
+        # Shear stress minus the strength that acts, which is 0 in the nucleus and 1 elsewhere.
         excess=tau - np.where(nucleus, 0.0, 1.0),
+        # Work of the pre-stress, and its work minus that of friction.
         work=np.zeros(2),
     )
 
@@ -569,8 +575,9 @@ def stored_energy(elastic: Elastic, earlier: Fields, later: Fields) -> float:
     nodes[1] = 0.5 if elastic.is_mirrored else 1.0
     kinetic = 0.5 * (np.sum(rows * nodes * earlier.vx**2) + np.sum(columns * earlier.vy**2))
     # The strain energy of normal stresses in plane strain, and that of shear stress. The square of
-    # a stress is its earlier value times its later value. Here lateral is 1 - gamma, the value of
-    # all rows except a free top, where it is 0.
+    # a stress is its earlier value times its later value. The modulus for strain in the other
+    # direction, ``lateral``, is 1 - gamma; the value 0 of a free top row is not used, since s_yy
+    # is 0 there.
     lateral = elastic.lateral.max()
     equal_products = earlier.sxx * later.sxx + earlier.syy * later.syy
     mixed_products = earlier.sxx * later.syy + earlier.syy * later.sxx

@@ -106,8 +106,9 @@ class Weights(NamedTuple):
 def _block_weights(lattice: Lattice) -> Weights:
     """Return the weights of blocks and bonds in a sum over the whole lattice.
 
-    On a mirrored lattice each counts twice, because it has a mirror image. Block 1 on the axis
-    counts once. Block 0 is a mirror image itself and does not count.
+    Bond i joins block i and block i + 1. On a mirrored lattice each counts twice, because it has a
+    mirror image. Block 1 on the axis counts once. Block 0 and bond 0 are mirror images themselves
+    and do not count.
     """
     if not lattice.is_mirrored:
         return Weights(np.ones(lattice.size), np.ones(lattice.size))
@@ -124,8 +125,9 @@ def _overestimate_of_viscous_loss(
 
     Let D_0 and D_1 be the dissipation at the start and at the end of a step of length h. The scheme
     counts h D_1. However, the damping force contains the velocity at the start of the step, and
-    acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4. Since a run starts at
-    rest, the differences of all its steps add up to 3 h D_1/4 of the last step.
+    acts over the mean velocity. The loss is therefore h (3 D_0 + D_1)/4, and 3 h (D_1 - D_0)/4
+    less than counted. Since a run starts at rest, these differences add up to 3 h D_1/4, where D_1
+    is the dissipation at the end of the run.
 
     strain_rate : between each block and the next one (a bond), at the end
     bond_weights : 2 if a bond has a mirror image that is not in the arrays, 0 if it is one, else 1
@@ -154,6 +156,7 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
     if medium.damping_counts_for_release:
         stress += medium.beta * np.diff(velocity, 2) / dx**2
     is_stuck = ~lattice.sliding[1:-1]
+    # The kernel has recorded the lowest stress that a stuck block had during the run.
     lowest_stress = float(np.min(stress[is_stuck], initial=totals["min_stuck_stress"]))
     # A block slides backwards at the stress -(1 + 2 r) if r is the friction ratio,
     # mu_k/(mu_s - mu_k). At this ratio, the block of the lowest stress would just do so.

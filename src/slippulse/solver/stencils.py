@@ -78,9 +78,9 @@ def compute_velocities(out, w, first, last, step, order):
 
     Returns the number of blocks that may stop within this time.
     """
-    # ``out`` holds the parenthesis that begins with w[k + 1]. Each pass over the blocks adds two
-    # terms and lowers k by 2, down to 3. The first pass adds one term if the order is even, so that
-    # k is odd.
+    # ``out`` holds the parenthesis that begins with w[k + 1]: at first the innermost one, or the
+    # next one if the order is even, so that k is odd. Each further pass over the blocks adds two
+    # terms and lowers k by 2, down to 3. The last pass adds the other terms.
     k = order
     if order % 2 == 1:
         for i in block_range(first, last):
@@ -100,8 +100,8 @@ def compute_velocities(out, w, first, last, step, order):
         out[i] = after
         # Count the block if its velocity is negative or NaN after the step. If it is negative only
         # for a part of the step, its tangent at the start of the step is negative at the end.
-        tangent_after = w[1, i] + step * w[2, i]
-        may_stop_count += (not (after >= 0.0)) | (tangent_after < 0.0)
+        tangent_at_end = w[1, i] + step * w[2, i]
+        may_stop_count += (not (after >= 0.0)) | (tangent_at_end < 0.0)
     return may_stop_count
 
 
@@ -125,7 +125,7 @@ def advance_slip(w, velocity, first, last, step, order):
     half, third = step / 2.0, step / 3.0
     fourth, fifth = step / 4.0, step / 5.0
     for i in block_range(first, last):
-        # The parentheses that begin with w[4] and with w[3].
+        # The parentheses that begin with w[4] (if k is 3, it is ``nested``) and with w[3].
         from_fourth = w[4, i] + fifth * nested[i] if k == 4 else nested[i]
         from_third = w[3, i] + fourth * from_fourth
         increment = step * (w[1, i] + half * (w[2, i] + third * from_third))

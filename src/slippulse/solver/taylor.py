@@ -98,7 +98,7 @@ def take_samples(recorder, motion, tally, start, end, order):
     w = motion.derivatives
     while tally.samples_taken < times.shape[0] and times[tally.samples_taken] <= end:
         n = tally.samples_taken
-        # Time of the sample since the step began.
+        # Time of the sample since the step began, kept within the step in spite of rounding.
         s = min(max(times[n], start), end) - start
         for p in range(blocks.shape[0]):
             i = blocks[p]
@@ -241,6 +241,7 @@ def add_losses(medium, tally, step_events, dissipation, h):
     The part that is left out is h/3 times the dissipation at the end of the step. It is not known
     yet, and `complete_losses` adds it at the start of the next step.
 
+    step_events : contains the sums of the jumps that events made in the slopes of the dissipation
     dissipation : `Dissipation` at the start of the step
     """
     if medium.beta > 0.0 or medium.alpha != 0.0:
@@ -276,7 +277,7 @@ def fill_derivatives(medium, motion, segments, alpha, top):
         )
         if alpha != 0.0:
             friction.subtract_rate_strengthening(w, 2, first, last, alpha)
-        friction.subtract_friction(motion, first, last, medium.law_kink)
+        friction.subtract_piecewise_linear_friction(motion, first, last, medium.law_kink)
         for k in range(3, top + 1):
             if is_mirrored and first == 1:
                 w[k - 1, 0] = w[k - 1, 2]
@@ -286,7 +287,7 @@ def fill_derivatives(medium, motion, segments, alpha, top):
                 )
             if alpha != 0.0:
                 friction.subtract_rate_strengthening(w, k, first, last, alpha)
-            # The columns of w are the blocks of the lattice from block 0 on.
+            # The same for piecewise linear friction. Column 0 of w is block 0 of the lattice.
             friction.add_weakening(w, k, first, last, np.uint64(0), motion, medium.law_kink)
     if is_mirrored:
         for k in range(1, top + 1):
@@ -383,10 +384,10 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
     tally.min_stuck_stress = min(tally.min_stuck_stress, effect.lowest_stress)
     if is_stick:
         tally.min_velocity = min(tally.min_velocity, effect.velocity_before)
-    # The event changes the time derivatives (slopes) of the viscous dissipation and of the power of
-    # friction. The first is the time derivative of beta/dx times the sum of (v_{i+1} - v_i)^2 over
-    # all pairs of neighbours, hence the factor 2. On a mirrored lattice each pair counts twice, and
-    # each block too, except block 1 on the axis.
+    # The event changes the slopes (time derivatives) of the viscous dissipation and of the power of
+    # friction. The first power is beta/dx times the sum of (dv)^2 over all pairs of neighbours, and
+    # its slope is 2 beta/dx times the sum of dv da, of which ``effect`` has the change. On a
+    # mirrored lattice each pair counts twice, and each block too, except block 1 on the axis.
     sides = 2.0 if medium.is_mirrored else 1.0
     loss_slope_change = effect.loss_slope_change * (sides * 2.0 * medium.beta / medium.dx)
     add_slope_change(step_events.loss_slope_changes, loss_slope_change, event.time)
@@ -406,6 +407,9 @@ def take_event(medium, motion, segments, scratch, history, event, instant, h):
 def finish_step(medium, motion, scratch, tally, order, h):
     """Advance slip, velocity and strain of all blocks that moved to the end of the step.
 
+    The accelerations are no longer needed. Until the end of this function, their row of ``w`` holds
+    the change of slip in the step, and is called SLIP_INCREMENT.
+
     Returns the largest velocity at the ends and the middles of the segments, which shows a blow-up.
 
     h : duration of the step
@@ -414,7 +418,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
     moved, step_events = scratch.moved, scratch.step_events
     fastest = 0.0
     # Advance the slip by the Taylor polynomials, and set the velocity to that at the end of the
-    # step. The row of the acceleration, SLIP_INCREMENT, receives the change of slip.
+    # step.
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.end_velocity, first, last, h, order)
@@ -438,8 +442,8 @@ def finish_step(medium, motion, scratch, tally, order, h):
             motion.strain[i] += medium.inverse_dx * change
     if medium.is_mirrored:
         motion.strain[0] = -motion.strain[1]
-    # Row SLIP_INCREMENT is again the acceleration from here on. The next step computes it for
-    # sliding blocks; for a block that has stuck, it is 0.
+    # The row is the acceleration again. The next step computes it for sliding blocks, and a block
+    # that has stuck has none.
     for q in range(step_events.count.n):
         if step_events.stuck_block[q] >= 0:
             w[SLIP_INCREMENT, step_events.stuck_block[q]] = 0.0
@@ -470,7 +474,7 @@ def apply_simultaneous_events(medium, motion, segments, scratch, history, end, l
                 motion.derivatives[k, block] = 0.0
             toggle_block(segments, block)
             record_stick(history, block, end)
-    # Releases.
+    # Releases. The next step computes the motion of these blocks.
     for q in range(due_count):
         toggle_block(segments, due[q])
         friction.begin_weakening(motion, medium.law_kink, due[q])
@@ -500,6 +504,7 @@ def advance(  # noqa: C901, PLR0912
         # Stage 1: the derivatives at the start of the step, and the end of the run.
         start = tally.time
         if medium.alpha == 0.0:
+            # With the constant 0.0, the compiler leaves out the friction alpha v.
             fill_derivatives(medium, motion, segments, 0.0, top)
         else:
             fill_rate_strengthened_derivatives(medium, motion, segments, top)
@@ -514,8 +519,7 @@ def advance(  # noqa: C901, PLR0912
         if last >= size - EDGE_BLOCKS or (first <= EDGE_BLOCKS and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
 
-        # The step lasts from the time `start` to `end`, and has the length h. Times of events are
-        # counted from its start.
+        # The step lasts from `start` to `end`, and has the length h.
         h, end = next_step(limits, start)
         # Stage 2: the events that will happen within the step.
         if not predict_events(medium, motion, segments, prediction, tally, h, top):

@@ -374,7 +374,7 @@ class Curve:
         distance_to_end = np.minimum(np.abs(level - at_left), np.abs(level - at_right))
         unsolved = np.flatnonzero(distance_to_end > 1e-15 * np.abs(level))
         # A smallest slope limits the steps.
-        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(rise) + 1e-300)
+        min_slope = np.where(is_flat, 1.0, 1e-8 * np.abs(rise))
         s[unsolved] = _solve_by_newton(
             self.coefficients(numbers[unsolved]),
             s=s[unsolved],
@@ -394,8 +394,9 @@ def _solve_by_newton(
 ) -> np.ndarray:
     """Return the parameters at which monotonic polynomials have given levels, by Newton's method.
 
-    s is where the search starts. sign is the sign of the slope of each polynomial. Slopes of a size
-    below min_slope are replaced by it. coefficients are those of `value_and_slope`.
+    s is where the search starts, between -1 and 1. sign is the sign of the slope of each
+    polynomial. Smaller slopes than min_slope are replaced by it, so that steps are not too long.
+    coefficients have the polynomials on their last axis, and are given to `value_and_slope`.
     """
     parameters = s.copy()
     # From here on, all arrays are kept only for the polynomials that are not solved yet.
@@ -420,9 +421,9 @@ def _lowest_level_beyond(
 ) -> list[np.ndarray]:
     """Return, for each panel, the lowest level of this panel and of later ones in its region.
 
-    The result has one array for each region. A region ends at a restart of a front, where levels
-    have a maximum. A characteristic that meets the curve before this maximum is not followed beyond
-    it, so that panels of later regions do not count.
+    The result has one array for each region. A region ends at a restart, where a slow front became
+    faster than the waves again, so that levels have a maximum there. A characteristic that meets
+    the curve before this maximum is not followed beyond it, so that later regions do not count.
 
     levels : T + x at the right ends of the panels, from left to right, for characteristics that run
         to the right; T - x at the left ends, from right to left, for those that run to the left
@@ -445,8 +446,8 @@ def _panels_of_crossings(
 
     There T + x rises to its value at the point (level). Regions, the parts of the curve between
     restarts, are searched from that of the point to the right. In the first region in which T + x
-    reaches the level, the panel is the last one on which it does so. Also return a mask that is
-    False for points without a panel; for these the last panel is returned.
+    reaches the level, it is the panel on which T + x rises to the level for the last time. Also
+    return a mask that is False for points without a panel; for these the last panel is returned.
 
     edges : ends of the panels
     lowest_levels : for each region and each of its panels, the lowest T + x at the right ends of

@@ -78,6 +78,8 @@ def layer_results(
     # The value that section IV A prints, which is half of `paper.peak_velocity` in SI units.
     printed_peak = layer.strength_drop / math.sqrt(2.0 * layer.shear_modulus * layer.density)
     paper_peak = layer.convert_from_si(printed_peak, "slip_velocity")
+    # In model units: the paper's value, the exact value, and a note on their difference. What the
+    # paper calls the stress drop of the pulse is the unit of stress.
     rows = {
         "front_speed_right": (front_speed_undamped(tau0), speed, ""),
         "transition_time": (paper_time, time, TRANSITION_NOTE),

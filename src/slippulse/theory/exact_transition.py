@@ -8,7 +8,7 @@ from ..model.checks import check_kind
 from ..model.prestress import Prestress
 from .curve import Curve
 from .domains import check_domains
-from .fast_front import straight_panels
+from .fast_front import FastFront, straight_panels
 from .front_speeds import front_speed
 from .part import Part
 from .prestress_pieces import split_into_pieces
@@ -54,16 +54,22 @@ def exact_transition_displacement(
     fronts_up_to = partial(
         fast_fronts, prestress, damping_ratio=damping_ratio, release=release, gamma=gamma
     )
-    # Half of the period of the leaf springs, after which uniform slip would stick.
+    # Positions from which waves come that change du/dt within less than a step of the search.
+    law = FastFront(prestress=prestress, gamma=gamma, damping_ratio=damping_ratio, release=release)
+    marks = [*law.marks, *(law.narrow_features if prestress.bumps else ())]
+    # Half of the period of the leaf springs, after which uniform slip would stick. The stick is
+    # searched for until twice this time, and longer only if it is not found.
     half_period = float(np.pi / np.sqrt(gamma))
-    # The stick is searched for until the time 2 half_period. Until then only fronts at a distance
-    # below 2 half_period influence x = 0, because waves have the speed 1. The fronts are computed a
-    # little farther.
-    fronts = fronts_up_to(reach=2.5 * half_period)
-    part = Part(fronts, gamma, until=2.0 * half_period)
-    stick = float(part.find_stick_times(np.zeros(1))[0])
+    until, stick = half_period, np.nan
+    while np.isnan(stick):
+        until *= 2.0
+        # Until this time only fronts at a smaller distance influence x = 0, because waves have the
+        # speed 1. The fronts are computed a little farther.
+        fronts = fronts_up_to(reach=1.25 * until)
+        part = Part(fronts, gamma, until=until, marks=marks)
+        stick = float(part.find_stick_times(np.zeros(1))[0])
     time_at_end_of_curve = fronts.edge_times[-1]
-    if not stick < time_at_end_of_curve:
+    if stick >= time_at_end_of_curve:
         # When x = 0 sticks, the fronts are already beyond the distance up to which they have been
         # computed, since they are faster than the waves. They are computed again, up to a distance
         # that they have certainly not reached at that time.

@@ -141,9 +141,10 @@ class FastFront:
     def max_panel_length(self, background: Interval) -> float:
         """Return the largest length of an unrefined panel on an interval of the linear background.
 
-        The phase of the waves changes by at most MAX_PHASE along such a panel. It changes by
+        The phase of the waves changes by at most MAX_PHASE along such a panel. The phase is
         kernel_rate (sqrt(gamma), or more if drag is strong) times the proper length along the
-        front, the integral of sqrt(dx^2 - dT^2).
+        front, the integral of sqrt(dx^2 - dT^2). The panel is also short enough to resolve the
+        static solution, which changes over lengths of about 1/kernel_rate.
         """
         if self.kernel_rate == 0.0:
             return MAX_LENGTH_WITHOUT_SPRINGS
@@ -155,11 +156,12 @@ class FastFront:
         if level > 0.0:
             slowness = self.slowness(np.array(min(level, 1.0)))
             proper_length_per_x = float(np.sqrt(1.0 - slowness**2))
-        # This length is in units of 1/kernel_rate.
-        length = MAX_SCALED_LENGTH
-        if length * proper_length_per_x > MAX_PHASE:
-            length = MAX_PHASE / proper_length_per_x
-        return length / self.kernel_rate
+        # Lengths in units of 1/kernel_rate are called scaled. The first one resolves the static
+        # solution.
+        scaled_length = MAX_SCALED_LENGTH
+        if scaled_length * proper_length_per_x > MAX_PHASE:
+            scaled_length = MAX_PHASE / proper_length_per_x
+        return scaled_length / self.kernel_rate
 
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
         """Return the panels of a front that runs right from a point, and the point where they end.

@@ -161,17 +161,17 @@ class Knots(NamedTuple):
         used.
         """
         is_one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
-        half_length = middle.x - self.x[k]
+        length = 2.0 * (middle.x - self.x[k])
         time_error = np.abs(middle.stick - self.interpolate(k, middle.x))
         # The slope of Hermite's cubic in the middle: 3/2 of the mean slope of the interval, minus a
         # quarter of the sum of the slopes at its ends.
-        cubic_slope = 0.75 * (self.stick[k + 1] - self.stick[k]) / half_length
+        cubic_slope = 1.5 * (self.stick[k + 1] - self.stick[k]) / length
         cubic_slope -= 0.25 * (self.slope[k] + self.slope[k + 1])
         slope_error = np.abs(middle.slope - cubic_slope)
         # The closer the edge comes to the wave speed (slope 1), the smaller an error of the slope
         # must be, so that the cubic remains faster than the waves.
         steepest = np.abs([self.slope[k], middle.slope, self.slope[k + 1]]).max(axis=0)
         largest_slope_error = np.minimum(SLOPE_TOLERANCE, 1.0 - steepest)
-        is_cubic_right = time_error <= 2.0 * STICK_TIME_TOLERANCE * half_length
+        is_cubic_right = time_error <= STICK_TIME_TOLERANCE * length
         is_cubic_right &= slope_error <= largest_slope_error
         return is_one_kind & (is_cubic_right | (middle.kind != FASTER_THAN_WAVES))

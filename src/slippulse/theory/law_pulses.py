@@ -218,6 +218,28 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     check_number("weakening", weakening, above=0.0, below=1.0 / gamma)
     tau0, gamma, beta, weakening = map(float, (tau0, gamma, beta, weakening))
 
+    speed = _slowest_weakening_speed(tau0, gamma=gamma, beta=beta, weakening=weakening)
+    zone_end, slip_beyond_zone = _weakening_zone_and_slip_beyond(
+        speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
+    )
+    minimum = slip_beyond_zone.first_velocity_minimum()
+    # In these two cases the rupture never sticks: the slip tends to tau_0/gamma and creeps on for
+    # ever, or slip velocity has no minimum at which it could be 0.
+    if slip_beyond_zone.creeps_forever() or not minimum.bracket.size:
+        return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
+    # The pulse sticks at the minimum of slip velocity, where U'' = 0. At the speed of the steady
+    # rupture, slip velocity is 0 there too. The bracket has a sample on each side of the minimum.
+    nearer, farther = minimum.bracket.tolist()
+    stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
+    final_slip = float(slip_beyond_zone.evaluate(stick))
+    # Both positions are negative: the end of the zone in which friction weakens, and the stick as
+    # seen from there.
+    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=final_slip)
+
+
+def _slowest_weakening_speed(tau0: float, gamma: float, beta: float, weakening: float) -> float:
+    """Return the speed of the slowest steady rupture under slip weakening (`weakening_pulse`)."""
+
     def sign_of_speed_error(v: float) -> float:
         """Return 1 if the speed v is too high for a steady rupture, and -1 if it is too low.
 
@@ -241,23 +263,7 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
         values = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
         allowed = f"values at which a steady rupture has a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
-    speed = root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
-    zone_end, slip_beyond_zone = _weakening_zone_and_slip_beyond(
-        speed, tau0=tau0, gamma=gamma, beta=beta, weakening=weakening
-    )
-    minimum = slip_beyond_zone.first_velocity_minimum()
-    # In these two cases the rupture never sticks: the slip tends to tau_0/gamma and creeps on for
-    # ever, or slip velocity has no minimum at which it could be 0.
-    if slip_beyond_zone.creeps_forever() or not minimum.bracket.size:
-        return SteadyRupture(speed=speed, width=math.inf, slip=tau0 / gamma)
-    # The pulse sticks at the minimum of slip velocity, where U'' = 0. At the speed of the steady
-    # rupture, slip velocity is 0 there too. The bracket has a sample on each side of the minimum.
-    nearer, farther = minimum.bracket.tolist()
-    stick = root_between(lambda xi: float(slip_beyond_zone.evaluate(xi, 2)), farther, nearer)
-    final_slip = float(slip_beyond_zone.evaluate(stick))
-    # Both positions are negative: the end of the zone in which friction weakens, and the stick as
-    # seen from there.
-    return SteadyRupture(speed=speed, width=-(zone_end + stick), slip=final_slip)
+    return root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
 
 
 def undamped_weakening_slip(tau0: float, gamma: float, weakening: float) -> float:
@@ -320,7 +326,8 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
     """Return slip and strain behind a front of speed v, as the result of scipy's `solve_ivp`.
 
     The integration goes from the front backwards, and ends where the slip stops. Events of the
-    result are this stop, and the peaks of slip velocity.
+    result are this stop, and the peaks of slip velocity. Strain here is the derivative of slip by
+    the distance behind the front, so that slip velocity is v times the strain.
     """
     # This module is slow to import.
     from scipy.integrate import solve_ivp
@@ -338,12 +345,9 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
         """
         # The evaluations are counted, because a stiff law would take for ever.
         if next(evaluation_numbers) == MAX_EVALUATIONS:
-            reason = (
-                f"computing the pulse takes more than {MAX_EVALUATIONS} evaluations of the "
-                f"friction law"
-            )
+            needed = f"the pulse needs more than {MAX_EVALUATIONS} evaluations of the friction law"
             allowed = "a larger gamma, or weaker friction"
-            raise ValueError(f"gamma: {gamma!r}, where {reason}; allowed: {allowed}")
+            raise ValueError(f"gamma: {gamma!r}, where {needed}; allowed: {allowed}")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *parameters)
         return [strain, (tau0 - resistance - gamma * slip) / inertia]

@@ -86,6 +86,8 @@ def stuck_between(part: Part, x: np.ndarray, time: float, first_x: float = np.in
     # Pairs that move so slowly that their bound is never positive.
     is_faint = velocity.max(axis=0) < FAINT_VELOCITY
     while x.size:
+        # At a position that is just being released du/dt is 0. The bound next to it need not become
+        # positive, however short the interval. So this interval is not cut into the smallest parts.
         both_move = velocity.min(axis=0) > ROUNDING_ERROR
         min_length = np.where(both_move, MIN_INTERVAL, MIN_INTERVAL_AT_REST)
         min_length[is_faint] = MIN_FAINT_INTERVAL
@@ -120,7 +122,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     """
     a, b = x
     # The points of the curve where the past of a begins, and where the past of b ends.
-    ends = part.curve.crossings(0.5 * (a + b), time - a, time + b)
+    ends = part.curve.crossings(y=0.5 * (a + b), xi=time - a, eta=time + b)
     bound = _lower_bound(part, x=x, velocity=velocity, time=time, ends=ends)
     return (bound > 0.0) | _has_positive_integrand(part, x=x, time=time, ends=ends)
 
@@ -182,6 +184,8 @@ def _has_positive_integrand(
     negative_part = np.maximum(-curve.source, 0.0)
     integral_to_begin, integral_to_end = _integrals_from_left_end(negative_part, ends)
     is_past_positive = integral_to_end - integral_to_begin <= 0.0
+    # The largest differences of xi = t - x and eta = t + x from a point between a and b to a point
+    # of the curve: xi falls, and eta rises, from left to right.
     d_xi = time - a - curve.evaluate("t_minus_x", b_ends.panel, b_ends.s)
     d_eta = time + b - curve.evaluate("t_plus_x", a_begins.panel, a_begins.s)
     return is_past_positive & (k * d_xi * d_eta < SQUARED_FIRST_ZERO)

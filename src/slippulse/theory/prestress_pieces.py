@@ -118,7 +118,7 @@ def _crossings_of_value(
     left, right = background.left, background.right
     inner_samples = samples[(samples > left) & (samples < right)]
     # An outermost interval is infinite. Beyond all Gaussians, and thus beyond all samples, it is
-    # uniform, so that one more sample there is sufficient.
+    # uniform, so that one more sample there is sufficient. Without Gaussians there are no samples.
     first = left if np.isfinite(left) else min([*samples[:1], right]) - 1.0
     last = right if np.isfinite(right) else max([*samples[-1:], left]) + 1.0
     x = np.concatenate([[first], inner_samples, [last]])

@@ -302,12 +302,13 @@ class DependenceDomains:
                   + (alpha - k (t - T))/2 E p at x_l - (alpha - k (t - T))/2 E p at x_r
                   + Int E d{ ... }/dy.
 
-        The second line, and p' at the ends, include the motion of the ends x_l and x_r. In the
-        integral, xi = t - y has the derivative -1 by y, and eta = t + y has the derivative 1. So
-        dz/dy is k [(xi - g) - (eta - h)], the derivative of the square bracket is dg + dh, and E
-        does not depend on y.
+        The second line, and p' at the ends, include the motion of the ends x_l and x_r, at which
+        z = 0, K = 1 and K' = -1/4. In the integral, xi = t - y has the derivative -1 by y, and
+        eta = t + y has the derivative 1. So dz/dy is k [(xi - g) - (eta - h)], the derivative of
+        the square bracket is dg + dh, and E does not depend on y.
         """
         k, alpha = self.stiffness, self.alpha
+        # The first line of the formula, divided by 2. Each further term has a factor k or alpha.
         strain = self._minus_mean_of_ends(static_solution, order=1)
         if k == alpha == 0.0:
             return strain
@@ -334,7 +335,8 @@ class DependenceDomains:
             z_slope = nodes.xi_minus_g - nodes.eta_minus_h
             return z_slope * (by_kernel + by_kernel_slope) + by_bracket
 
-        # The terms with alpha - k (t - T). At both ends K = 1 and K' = -1/4, because z = 0.
+        # The second line of the formula, divided by 2. Here p includes the factor E, and elapsed is
+        # t - T.
         p_left, p_right = self._decayed_at_ends(static_solution, order=0)
         elapsed_left, elapsed_right = self._elapsed_at_ends()
         terms_with_k = 0.25 * k * (elapsed_right * p_right - elapsed_left * p_left)
@@ -387,7 +389,7 @@ class DependenceDomains:
         function at nodes of the curve. If component_shape is (2,), it returns those of two
         functions, and the result has one row of integrals for each of them.
         """
-        # On a long curve the case of a constant kernel (1) has a faster way.
+        # Without stiffness and drag the kernel and E are 1, and long curves have a faster way.
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
             return self._integrate_without_kernel(integrand)
         integrals = np.empty((*component_shape, self.xi.size))
@@ -396,7 +398,8 @@ class DependenceDomains:
         for start in range(0, order.size, POINTS_PER_CHUNK):
             points = order[start : start + POINTS_PER_CHUNK]
             integrals[..., points] = self._integrate_chunk(points, integrand, component_shape)
-        # A point on the curve at the end of a panel has an empty domain.
+        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
+        # next panel.
         return np.where(self.left.panel > self.right.panel, 0.0, integrals)
 
     def _integrate_chunk(
@@ -413,6 +416,8 @@ class DependenceDomains:
         """
         curve = self.curve
         last_panel = self.right.panel[points]
+        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
+        # next panel.
         first_panel = np.minimum(self.left.panel[points], last_panel)
         start, stop = int(first_panel.min()), int(last_panel.max()) + 1
         needed_panels = slice(start, stop)
@@ -447,8 +452,8 @@ class DependenceDomains:
         the one from the left end of the curve to the right end of the domain, minus the one to the
         left end of the domain.
         """
-        # Where an integrand contains xi - g or eta - h, it has the factor k = 0. So any values of
-        # these two fields will do.
+        # Where an integrand contains xi - g, eta - h or a derivative of K, it has the factor k = 0.
+        # So any values of them will do.
         unused, all_panels = np.zeros((1, 1)), slice(0, len(self.curve.panels))
         nodes = PanelNodes(unused, unused, kernel=lambda order: 1.0, panels=all_panels)
         values = np.broadcast_to(integrand(nodes), (1, self.curve.x.size))

@@ -132,9 +132,9 @@ class Rupture(ExplainsRemovedNames):
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
         """Return the connected part of the rupture behind both fronts of a stretch, up to a time.
 
-        Its marks are all positions where the motion of a front may change suddenly: changes of the
-        pre-stress, points where a slow front became fast again (restarts) or where two fronts met
-        (joins), and the ends of both fronts.
+        Its marks are all positions where the motion of a front may change suddenly: the nucleation
+        point of most scenes, x = 0, changes of the pre-stress, points where a slow front became
+        fast again (restarts) or where two fronts met (joins), and the ends of both fronts.
         """
         curve, law = stretch.curve(), self.law
         changes_of_prestress = [*law.marks, *law.narrow_features]
@@ -231,7 +231,7 @@ class Rupture(ExplainsRemovedNames):
         array, NaN where x does not stick before ``duration``, and beyond the horizon
         """
         x = as_numbers("x", x)
-        return self._nan_where_unknown(x, self._stick_time_beyond_end(x))
+        return self._nan_where_unknown(x, self._stick_time_even_after_end(x))
 
     def _distinct_positions(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the distinct positions among x, and for each x its index in them.
@@ -242,7 +242,7 @@ class Rupture(ExplainsRemovedNames):
         distinct_x, index = np.unique(x, return_inverse=True)
         return distinct_x, index.reshape(x.shape)
 
-    def _stick_time_beyond_end(self, x: np.ndarray) -> np.ndarray:
+    def _stick_time_even_after_end(self, x: np.ndarray) -> np.ndarray:
         """Return the stick time at each x, even if it is after the duration or beyond the horizon.
 
         NaN where no stick is found until slightly after the duration.
@@ -334,10 +334,12 @@ class Rupture(ExplainsRemovedNames):
         """
 
         def time_until_stick(position: float) -> float:
-            """Return the stick time of a position minus ``time``; negative if it has stuck."""
-            stick = float(self._stick_time_beyond_end(np.array(position)))
+            """Return the stick time of a position minus ``time``; negative if it has stuck.
+
+            If the position never sticks, any time after the end of the rupture is its stick time.
+            """
+            stick = float(self._stick_time_even_after_end(np.array(position)))
             if np.isnan(stick):
-                # The position never sticks. Any time after the end of the rupture stands for this.
                 stick = 2.0 * self.duration
             return stick - time
 
@@ -351,7 +353,7 @@ class Rupture(ExplainsRemovedNames):
         lower, upper = sorted((front, stuck_position))
         examined = np.append(knots[(knots > lower) & (knots < upper)], stuck_position)
         examined = examined[np.argsort(np.abs(examined - front))]
-        has_stuck = self._stick_time_beyond_end(examined) <= time
+        has_stuck = self._stick_time_even_after_end(examined) <= time
         # The edge lies between the first position that has stuck and the one before it.
         first_stuck = int(np.argmax(has_stuck))
         still_slides = examined[first_stuck - 1] if first_stuck > 0 else front
@@ -485,8 +487,9 @@ class Rupture(ExplainsRemovedNames):
         limits = [Limit(point.x, point.time, reason) for point, reason in self._unknown_points]
         for part in self._solved_parts:
             limits_of_part = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
-            # Slip is checked only up to the horizon of the limits that have been found so far.
-            horizon = partial(_horizon, limits + limits_of_part)
+            # Beyond the horizon the solution is not valid. It is the time at which, for a position
+            # x, the first wave arrives from one of the limits that have been found so far.
+            horizon = partial(_earliest_wave_arrival, limits + limits_of_part)
             for point in part.falling_slip(horizon):
                 limits_of_part.append(Limit(point.x, point.time, FALLING_SLIP))
             limits += limits_of_part
@@ -511,10 +514,10 @@ class Rupture(ExplainsRemovedNames):
         -------
         array, infinite where there is no such time
         """
-        return _horizon(self._limits, as_numbers("x", x))
+        return _earliest_wave_arrival(self._limits, as_numbers("x", x))
 
 
-def _horizon(limits: list[Limit], x: np.ndarray) -> np.ndarray:
+def _earliest_wave_arrival(limits: list[Limit], x: np.ndarray) -> np.ndarray:
     """Return the earliest time at which waves from one of the limits reach x."""
     horizons = [limit.time + np.abs(x - limit.x) for limit in limits]
     return np.min(horizons, axis=0, initial=np.inf)

@@ -296,9 +296,10 @@ class FreeBoundary:
             if not np.all(tau < 0.0):
                 return None
             return (self.known_prestress_integral + prestress_integral) / tau
+        # One row for each integral, and one column for each node: first those of the known curve,
+        # then those of the new panel. The slope is the derivative by the position of the front.
         kernel, kernel_slope = self.kernel_and_slope(x)
-        # The integrals over the known curve, from the entries to x0, and their derivatives by the
-        # position of the front.
+        # The integrals over the known curve, from the entries to x0, and their derivatives.
         known_count = self.known_t_plus_x.size
         over_known = (self.known_weights * kernel[:, :known_count]).sum(axis=1)
         over_known_slope = (self.known_weights * kernel_slope[:, :known_count]).sum(axis=1)
@@ -437,8 +438,8 @@ class SlowFront:
                 continue
             event = _first_event(x, mark, end_was_moved=move_count > 0)
             if event.name != "none" and not _ends_at_event(event, move_count):
-                # Beyond an event the solution may be meaningless. So the chunk is solved again with
-                # its end at the event.
+                # The event is inside of the chunk. Beyond an event the solution may be meaningless.
+                # So the chunk is solved again with its end at the event.
                 chunk = chunk._replace(stop=float(chunk.parameters(np.array(event.s))))
                 move_count += 1
             elif np.any(np.diff(x, prepend=self.x0) <= 0.0):
@@ -484,8 +485,8 @@ class SlowFront:
         # The entry could also be found from its value of T - x. But where the pre-stress is nearly
         # 0, T - x is constant to rounding, and the search would fail.
         first = self.entry_left_of(last_entry_x)
-        # The last entry was the left end of the curve.
         if first.panel < 0:
+            # The last entry was the left end of the curve.
             return None
         skipped_motion, s = 0.0, first.s
         for panel in range(first.panel, -1, -1):
@@ -507,7 +508,8 @@ class SlowFront:
                 return NO_ENTRY
             # The motion must be positive, since a motion of 0 means that nothing was skipped.
             min_motion = 0.1 * ROUNDING_MOTION * self.size
-            return Entry(panel, skipped.last_s, max(skipped_motion, min_motion))
+            positive_motion = max(skipped_motion, min_motion)
+            return Entry(panel, skipped.last_s, skipped_motion=positive_motion)
         return NO_ENTRY
 
     def entry_left_of(self, last_entry_x: float) -> Entry:
@@ -532,7 +534,8 @@ class SlowFront:
 
         A wave that entered the rupture at an entry later moves the front. Entries are skipped as
         long as all of them together move it by no more than the fraction ``negligible`` of the size
-        of the rupture. skipped_motion is the motion by entries that were skipped on other panels.
+        of the rupture, because panels do not resolve such small motions. skipped_motion is the
+        motion by entries that were skipped on other panels.
         """
         # The entries are sampled from the given one (sample 0) to the left end of its panel, at
         # s = -1. motions has the distance that the front moves by all entries up to each sample.
@@ -543,12 +546,14 @@ class SlowFront:
         is_negative = bool(np.min(self.curve.source[entry.panel]) < 0.0)
         largest_motion = self.size * (ROUNDING_MOTION if is_negative else negligible)
         is_negligible = np.abs(motions) <= largest_motion
+        skips_all = bool(is_negligible.all())
+        # The number of the last sample that is skipped.
         last = s.size - 1
-        if not is_negligible.all():
+        if not skips_all:
             # The sample before the first one whose motion is too large, but at least sample 0.
             last = max(0, int(np.argmin(is_negligible)) - 1)
-        skips_all = last == s.size - 1
-        # Beyond the skipped entries, the front moves on if the motion grows to the next sample.
+        # The entries after the skipped ones move the front back if the motion falls from the last
+        # sample that is skipped to the next one.
         next_moves_on = True
         if is_negative and not skips_all:
             next_moves_on = bool(motions[last + 1] >= motions[last])

@@ -90,15 +90,18 @@ class Stretch:
         The panels, and the point where they end, are given with this side turned to the right: for
         the left side they are mirrored at x = 0.
         """
-        new_panels = turned_to_right(side, panels)
-        self.panels = self.panels + new_panels if side > 0.0 else new_panels + self.panels
+        mirrored_panels = turned_to_right(LEFT, panels)
+        if side > 0.0:
+            self.panels = self.panels + panels
+        else:
+            self.panels = mirrored_panels + self.panels
         # Existing curves are extended, which is faster than to build them again from all panels.
         # The new panels are the last ones of the curve with this side turned to the right. In the
         # curve with the other side turned to the right they are mirrored, and come first.
         if side in self.curves and panels:
             self.curves[side] = self.curves[side].joined(Curve(panels))
         if -side in self.curves and panels:
-            self.curves[-side] = Curve(turned_to_right(LEFT, panels)).joined(self.curves[-side])
+            self.curves[-side] = Curve(mirrored_panels).joined(self.curves[-side])
         self.ends[side] = Point(side * end.x, end.time)
 
     def cut(self, side: float, x: float) -> None:
@@ -144,10 +147,11 @@ def spread(fast_front: FastFront, until: float) -> tuple[list[Stretch], list[tup
     unknown = []
     for stretch, side in product(stretches, SIDES):
         reason = str(stretch.end_reason[side])
+        # At its other reasons to end, such as the final time, the rupture remains known.
         if reason in REASONS_UNKNOWN:
             unknown.append((stretch.ends[side], REASONS_UNKNOWN[reason]))
-    overrun = _cut_overrunning_fronts(stretches)
-    return stretches, unknown + overrun
+    points_of_cuts = _cut_overrunning_fronts(stretches)
+    return stretches, unknown + points_of_cuts
 
 
 def _earliest_moving_front(stretches: list[Stretch]) -> tuple[Stretch, float] | None:
@@ -176,6 +180,7 @@ def _cut_overrunning_fronts(stretches: list[Stretch]) -> list[tuple[Point, str]]
         for arriving, side, neighbour in ((right, LEFT, left), (left, RIGHT, right)):
             # The front of the neighbour runs to the opposite side.
             x = neighbour.ends[-side].x
+            # A stretch without panels is a single point, which has not run anywhere.
             if arriving.panels and side * arriving.ends[side].x > side * x:
                 arriving.cut(side, x)
                 arriving.end_reason[side] = "met"
@@ -201,7 +206,7 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
         stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
             # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
-            panels, _ = fast_front.panels_to_right(Point(left, 0.0), right, np.inf)
+            panels, _ = fast_front.panels_to_right(Point(left, 0.0), stop=right, until=np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         stretches.append(stretch)
     return stretches
@@ -217,6 +222,7 @@ def _advance_fast_front(fast_front: FastFront, stretch: Stretch, side: float, un
     panels, end = fast_front.panels_to_right(Point(side * start.x, start.time), stop, until)
     if panels:
         stretch.add(side, panels, end)
+    # A front that ends for another reason has reached negative pre-stress, and is slow from now on.
     if end.time >= until:
         stretch.end_reason[side] = "duration"
     elif end.x >= stop:
@@ -248,6 +254,7 @@ def _advance_slow_front(fast_front: FastFront, stretch: Stretch, side: float, un
     # A front cannot stop in positive pre-stress. If it seems to, its motion is not known.
     if reason == "stops" and fast_front.prestress(side * end.x) > EQUALITY_TOLERANCE:
         reason = "positive_prestress"
+    # In all cases but these, the front is still slow, and its next panel is added later.
     if reason in END_REASONS:
         stretch.end_reason[side] = reason
     elif end.time >= until:
@@ -297,7 +304,8 @@ def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
         return None
     x = root_between(delay_of_left, low, high, xtol=1e-14)
     # Like a slow front that becomes fast again, a slow front that meets another one is a restart of
-    # the curve. It takes longer for the last distance than a wave, whose speed is 1.
+    # the curve, here in the lists of both sides. A slow front takes longer for the last distance
+    # than a wave, whose speed is 1.
     left_times = left_curve.arrival(np.array([x - MEETING_DISTANCE, x]))
     right_times = right_curve.arrival(np.array([x, x + MEETING_DISTANCE]))
     durations = np.abs(np.diff([left_times, right_times]))

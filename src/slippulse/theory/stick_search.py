@@ -186,13 +186,15 @@ class StickSearch:
         # The search is for the time at which du/dt falls to this value.
         target = np.zeros(rows.size)
         # At the start of a step that begins at the release, du/dt is 0, but the block does not
-        # stick there. Such a step is shortened, and its target is QUIET_VELOCITY.
+        # stick there. Such a step is shortened to the part in which du/dt falls to its rounding
+        # error, QUIET_VELOCITY, and this is its target.
         quiet = np.flatnonzero(at_start <= 0.0)
         shortened = self._shorten_steps(x[quiet], start[quiet], end[quiet])
         target[quiet] = QUIET_VELOCITY
         start[quiet], end[quiet] = shortened.time.T
         at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
-        # In steps without a positive velocity the end of the shortened step is returned.
+        # If du/dt never rises above 0, the shortened step ends next to the start of the step. This
+        # end is then returned.
         zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -221,10 +223,9 @@ class StickSearch:
         duration = end - start
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
         # The columns go back in time: column 0 is the end of the step, and column -1 is next to its
-        # start. So this is the column of the latest sample above QUIET_VELOCITY, and the column
-        # before has the sample that follows it in time. If no sample is above, these are the
-        # columns 0 and -1.
-        last_above = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        columns = np.stack([last_above, last_above - 1], axis=1)
+        # start. The shorter step starts at the latest sample above QUIET_VELOCITY; this is column 0
+        # if no sample is above. It ends at the sample after that, in the column before.
+        start_column = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
+        columns = np.stack([start_column, start_column - 1], axis=1)
         rows = np.arange(x.size)[:, None]
         return VelocitySamples(x, fine.time[rows, columns], fine.velocity[rows, columns])

@@ -134,6 +134,7 @@ class PartWithEdge(Part):
         curve = self.curve
         left, right = curve.edges[[0, -1]]
         if self.one_side:
+            # The part is symmetric, and is computed only at x >= 0.
             left = max(left, 0.0)
         # The fronts are followed from the position that was released first.
         just_before_end = self.until * (1.0 - EQUALITY_TOLERANCE)
@@ -251,6 +252,7 @@ class PartWithEdge(Part):
             slope_on_wave = 2.0 * by_eta if side > 0.0 else -2.0 * by_xi
             x = x - domains.slip_velocity() / slope_on_wave
             x = x.clip(left, right)
+        # The wave meets the edge between the two positions.
         offset = LANDING_OFFSET * self.scale
         return np.clip([x - offset, x + offset], left, right).ravel()
 
@@ -303,6 +305,7 @@ class PartWithEdge(Part):
         if not x.size:
             return knots, x
         new_knots = self._make_knots(x, self._exact_stick_time(x, knots))
+        # The new knots in the middles follow those at the starts of pieces.
         middle_knots = new_knots.select(np.s_[inner_piece_starts.size :])
         refined = knots.joined(new_knots)
         # The kinds of some knots are changed in place.
@@ -370,7 +373,7 @@ class PartWithEdge(Part):
         """
         k = np.searchsorted(knots.x, piece_starts)
         is_longer_in_all = knots.has_jump(k).all(axis=0)
-        # Shorter pieces are left as they are, because several of them may have a jump.
+        # If the pieces are short, each may have a jump of its own, and the interval is not changed.
         piece_length = piece_starts[1] - piece_starts[0]
         is_long = piece_length > SINGLE_JUMP_LENGTH * JUMP_TOLERANCE * self._length
         slow = k[:, is_longer_in_all & is_long]
@@ -435,7 +438,7 @@ class PartWithEdge(Part):
         for _ in range(MAX_NEWTON_STEPS):
             if not missing.size:
                 break
-            # Both are 0 before the first step.
+            # Both are 0 before the first step, which has no secant.
             velocity_before, step_before = velocity[missing], step[missing]
             velocity[missing] = self.velocity(x[missing], time[missing])
             # In the next steps the acceleration is replaced by the secant, the change of velocity
@@ -448,8 +451,8 @@ class PartWithEdge(Part):
             time[missing] -= step[missing]
             # A time that is far from the interpolated one may belong to another zero of du/dt.
             is_near = np.abs(time[missing] - guess[missing]) <= MAX_CORRECTION * length[missing]
-            # The search also ends if the next step will be tiny. It is about the product of the
-            # last two steps.
+            # The search also ends if the next step will be tiny. Its size is about the product of
+            # the last two steps. After the first step, the size of this step is used instead.
             step_size = np.abs(step[missing])
             next_size = step_size * np.where(step_before == 0.0, 1.0, np.abs(step_before))
             is_tiny = step_size < NEWTON_TOLERANCE
@@ -506,7 +509,8 @@ class PartWithEdge(Part):
             x = self._positions_stuck_earlier(first)
             if not x.size:
                 break
-            self.knots = self._with_more_knots(self.knots, x, self.find_stick_times(x, first.time))
+            stick_times = self.find_stick_times(x, until=first.time)
+            self.knots = self._with_more_knots(self.knots, x, stick_times)
             first = self._first_at_knots()
         return first
 
@@ -520,8 +524,8 @@ class PartWithEdge(Part):
         has_stuck = knots.kind != SLIDING
         if not has_stuck.any():
             return None
-        # The stick time of a knot may be later than computed, by its error. Of the knots that stick
-        # first, apart from errors and rounding, the one nearest to x = 0 is chosen.
+        # The stick time of a knot may be later than computed, by its error. So several knots may
+        # stick first. The one nearest to x = 0 is chosen, so that rounding does not decide.
         error = self._stick_time_errors()
         latest_stick = np.where(has_stuck, knots.stick + error, np.inf)
         may_be_first = np.flatnonzero(latest_stick <= np.min(latest_stick) + 1e-10)
@@ -584,9 +588,9 @@ class PartWithEdge(Part):
             # If a front is in this interval at the time, only its released part is examined.
             left, right = knots.x[k : k + 2].tolist()
             if not is_released[k]:
-                left = curve.front_at(first.time, right, -1.0)
+                left = curve.front_at(first.time, right, side=-1.0)
             if not is_released[k + 1]:
-                right = curve.front_at(first.time, left, 1.0)
+                right = curve.front_at(first.time, left, side=1.0)
             # If the first stick lies in this interval, both sides of it are examined.
             inner = [first.x] if left < first.x < right else []
             left_ends += [left, *inner]

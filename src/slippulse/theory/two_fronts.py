@@ -39,10 +39,10 @@ def fast_fronts(
             "prestress: reaches 1 away from x = 0; allowed: a profile that reaches 1 only at x = 0"
         )
     start = Point(0.0, 0.0)
-    right_front, _ = law.panels_to_right(start, reach, np.inf)
+    right_front, _ = law.panels_to_right(start, stop=reach, until=np.inf)
     # The left front is computed as the right front of the pre-stress mirrored at x = 0.
     mirrored_left_front = right_front
     if not prestress.symmetric:
-        mirrored_left_front, _ = law.mirrored().panels_to_right(start, reach, np.inf)
+        mirrored_left_front, _ = law.mirrored().panels_to_right(start, stop=reach, until=np.inf)
     left_front = turned_to_right(-1.0, mirrored_left_front)
     return Curve(left_front + right_front)

@@ -152,7 +152,8 @@ def _log_m_plus_at_iy(
     log_values, the result of `log_factor`, are the values of this logarithm at the nodes.
     excess_speed is v - 1.
     """
-    # Without damping the caller does not use the result. The division must only not fail.
+    # Without damping, y is infinite. The caller does not use the result then, and the smallest
+    # divisor only avoids an error.
     y = 1.0 / np.maximum(damping_ratio * (1.0 + excess_speed), 1e-300)
     z_minus_iy = contour.z - 1j * y[:, None]
     log_at_iy = np.sum(log_values * (contour.weight / z_minus_iy), axis=1).imag / np.pi
@@ -311,7 +312,7 @@ def q_and_r(iw: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_d
     c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
     r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
     if gamma_dx2 == 0.0:
-        # Then there is no drag, either (a = 0), and 4 q^2 = (i w)^2.
+        # Drag is computed only together with leaf springs. So a = 0, and 4 q^2 = (i w)^2.
         return Roots(0.5 * iw, r)
     # d_1 and d_2 are a/2 -+ this root.
     root_of_q = np.sqrt(complex(0.25 * alpha_dx**2 - gamma_dx2))

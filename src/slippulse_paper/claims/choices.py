@@ -102,8 +102,9 @@ def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
 
     It is the smallest change of this choice from a combination at which the claim holds to one at
     which it fails. Choices with larger effects come first. If no choice decides, the result is the
-    single change with the largest effect. Effects on exact solutions rank above those on lattices.
+    single change with the largest effect.
     """
+    # Every change between exact solutions ranks above all changes between lattices.
     rank = attrgetter("exact", "size")
     ranked = sorted(changes(combinations), key=rank)
     # The dictionary keeps the last change of each choice, which ranks highest.
@@ -167,35 +168,40 @@ class OverChoices(Claim):
         changes : the changes of choices on which the verdict depends
         choice_names : words for each choice
         settings, unsure : the choices in words, and the template values of the result, at the first
-            combination whose verdict has a caveat, or at the first combination if none has
+            combination with a caveat (`_in_doubt`)
         """
-        holding, failing = [], []
-        at_last_release, with_caveat = [], []
+        deviations: dict[bool | None, list] = {True: [], False: [], None: []}
         for combination in self.combinations:
             result = combination.result
-            if result["holds"] is True:
-                holding.append(result["deviation"])
-            if result["holds"] is False:
-                failing.append(result["deviation"])
-            if combination.fraction == LAST_RELEASE_FRACTION and result["deviation"] is not None:
-                at_last_release.append(result["deviation"])
-            if result["verdict"] == rules.CAVEAT:
-                with_caveat.append(combination)
-        in_doubt = with_caveat[0] if with_caveat else self.combinations[0]
+            deviations[result["holds"]].append(result["deviation"])
+        at_last_release = [
+            combination.result["deviation"]
+            for combination in self.combinations
+            if combination.fraction == LAST_RELEASE_FRACTION
+            and combination.result["deviation"] is not None
+        ]
+        in_doubt = self._in_doubt()
         settings = [
             f"{CHOICE_WORDS[name]} {text_of_value(value)}"
             for name, value in in_doubt.choice.items()
             if name in CHOICE_WORDS
         ]
         return self.shown.template_values | {
-            "holding": holding,
-            "failing": failing,
+            "holding": deviations[True],
+            "failing": deviations[False],
             "last": at_last_release,
             "changes": self.decisive,
             "choice_names": CHOICE_WORDS,
             "settings": settings,
             "unsure": in_doubt.claim.template_values,
         }
+
+    def _in_doubt(self) -> Combination:
+        """Return the first combination whose verdict has a caveat; the first one if none has."""
+        for combination in self.combinations:
+            if combination.result["verdict"] == rules.CAVEAT:
+                return combination
+        return self.combinations[0]
 
 
 def over_choices(

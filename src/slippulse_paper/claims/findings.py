@@ -48,14 +48,14 @@ def all_numbers(
     The result is empty if a changed configuration has no runs for some of the numbers.
 
     damping_ratio : damping ratio of the figures; an expression can use it as ``figures``
-    expression_groups : arguments of `numbers`, one mapping for each table
+    expression_groups : arguments of `numbers_of_table`, one mapping for each table
     """
     values: dict[str, float] = {}
     for group in expression_groups:
-        numbers_of_table = numbers(evidence, damping_ratio, **group)
-        if not numbers_of_table:
+        values_of_table = numbers_of_table(evidence, damping_ratio, **group)
+        if not values_of_table:
             return {}
-        values |= numbers_of_table
+        values |= values_of_table
     if id in COMPUTED_FINDINGS:
         computed = COMPUTED_FINDINGS[id](evidence)
         if not computed:
@@ -64,7 +64,7 @@ def all_numbers(
     return values
 
 
-def numbers(
+def numbers_of_table(
     evidence: Evidence, damping_ratio: float, table: str, take: Mapping, where: str = ""
 ) -> dict[str, float]:
     """Evaluate expressions over the columns of one table; empty if no row is selected.

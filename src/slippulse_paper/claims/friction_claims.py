@@ -114,9 +114,7 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
 
     Pulses at the strongest weakening and the strongest strengthening with slip rate
     (STRONGEST_RATES) are compared with pulses at constant friction and the same pre-stress level.
-
-    slowest, fastest : range of the front speeds under slip weakening, at the pre-stress ``level``
-    undamped : front speed at this level by the paper's formula, at constant friction
+    The sentences of the claim quote `speeds_under_slip_weakening`.
     """
     # The rows with this role are simulated pulses. The column over_critical and STRONGEST_RATES
     # have the rate strengthening divided by the critical one.
@@ -134,20 +132,29 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
         "smallest change of the width": float(smallest["pulse_width"]),
         "smallest change of the slip": float(smallest["pulse_slip"]),
     }
-    slip_weakening = evidence.tables["friction_laws"].query(
-        f"law == 'slip_weakening' and level == {SLIP_WEAKENING_LEVEL}"
-    )
-    speeds = slip_weakening["exact_speed"].dropna()
-    template_values = {
-        "slowest": speeds.min(),
-        "fastest": speeds.max(),
-        "level": SLIP_WEAKENING_LEVEL,
-        "undamped": 1.0 / np.sqrt(1.0 - SLIP_WEAKENING_LEVEL**2),
-    }
-    # The caveat is that only one friction law was tested.
+    # Each width and each slip counts as one run. The caveat is that only one friction law was
+    # tested.
     return Qualitative(
         decided=is_changed.to_numpy().ravel(),
         condition=True,
         further=further,
-        template_values=template_values,
+        template_values=speeds_under_slip_weakening(evidence),
     )
+
+
+def speeds_under_slip_weakening(evidence: Evidence) -> dict[str, float]:
+    """Return exact front speeds under slip weakening, at one pre-stress level.
+
+    slowest, fastest : range of these speeds
+    level : the pre-stress level, SLIP_WEAKENING_LEVEL
+    undamped : front speed at this level by the paper's formula, at constant friction
+    """
+    level = SLIP_WEAKENING_LEVEL
+    rows = evidence.tables["friction_laws"].query("law == 'slip_weakening' and level == @level")
+    speeds = rows["exact_speed"].dropna()
+    return {
+        "slowest": speeds.min(),
+        "fastest": speeds.max(),
+        "level": level,
+        "undamped": 1.0 / np.sqrt(1.0 - level**2),
+    }

@@ -89,13 +89,16 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
     """Judge that ruptures under a displacement boundary turn into steady pulses.
 
-    Each pulse of the part pulse is judged far away, by the same pulse of the part far.
+    The pulses of the part pulse are judged at the positions of the part far, where most of them
+    were followed. The template values are the numbers of `numbers_on_splits`.
     """
+    tolerance = evidence.tolerance(id)
     pulses = finest_rows(rows_at_station(evidence, LAST), "pulse")
-    decided = steady_on_two_grids(evidence, "far", evidence.tolerance(id))
-    # The part far has one more pulse, which belongs to the part step.
+    decided = steady_on_two_grids(evidence, "far", tolerance)
+    # The part far has one more pulse, which is not among the judged ones. It only shows how a pulse
+    # of the part step goes on.
     decided = decided[decided.index.isin(pulses.index)]
-    values = split_pulses(evidence, evidence.tolerance(id))
+    values = numbers_on_splits(evidence, tolerance)
     return Qualitative(decided=list(decided), template_values=values)
 
 
@@ -136,34 +139,41 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
     """Judge that a point slides for one crossing time also if the top of the layer may rise.
 
     The crossing time passes between the arrival of the front and that of shear waves from the top.
-    The parts free and held have the same pulses, with a top that may rise and with one that cannot.
+    The part free has pulses with such a top.
     """
     rows = rows_at_station(evidence, LAST)
-    # The sliding time of each pulse, divided by its crossing time.
+    # The sliding time of each pulse with a free top, divided by its crossing time, should be 1.
     crossings = sliding_in_crossings(finest_rows(rows, "free"))
     deviations = (crossings - 1.0).abs()
     # The sliding time is as uncertain as the pulse width, which changes from the second finest to
     # the finest grid. The uncertainty is the largest of these changes, in crossing times.
     uncertainty = float((change_by_refinement(rows, "free", "pulse_width") * crossings).max())
-    in_crossings = "sliding time divided by the time for a shear front to cross the layer"
-    compared = {
-        f"{in_crossings}, top free to rise": crossings,
-        f"{in_crossings}, top held": sliding_in_crossings(finest_rows(rows, "held")),
-        "sliding time with free top divided by that with held top": times_longer_with_free_top(
-            rows
-        ),
-    }
-    further = {}
-    for words, times in compared.items():
-        further[f"{words}: smallest"] = float(times.min())
-        further[f"{words}: largest"] = float(times.max())
     return Approximate(
         tolerance=evidence.tolerance(id),
         deviations=deviations.to_numpy(),
         median=Uncertain(float(deviations.median()), uncertainty),
         ratio=Uncertain(float(crossings.median()), uncertainty),
-        further=further,
+        further=ranges_of_sliding_times(rows),
     )
+
+
+def ranges_of_sliding_times(rows: pd.DataFrame) -> dict[str, float]:
+    """Return ranges of sliding times by words for the table of claims.
+
+    The parts free and held have the same pulses, with a top that may rise and with one that cannot.
+    """
+    in_crossings = "sliding time divided by the time for a shear front to cross the layer"
+    free_over_held = "sliding time with free top divided by that with held top"
+    ratios_by_words = {
+        f"{in_crossings}, top free to rise": sliding_in_crossings(finest_rows(rows, "free")),
+        f"{in_crossings}, top held": sliding_in_crossings(finest_rows(rows, "held")),
+        free_over_held: times_longer_with_free_top(rows),
+    }
+    ranges = {}
+    for words, values in ratios_by_words.items():
+        ranges[f"{words}: smallest"] = float(values.min())
+        ranges[f"{words}: largest"] = float(values.max())
+    return ranges
 
 
 def times_longer_with_free_top(rows: pd.DataFrame) -> pd.Series:
@@ -234,50 +244,66 @@ def steady_on_two_grids(evidence: Evidence, part: str, tolerance: float) -> pd.S
         is_steady = (change < tolerance).all(axis=1) & (pulses["sliding_again"] == 0.0)
         is_steady_on_grids.append(is_steady)
     on_finest, on_second_finest = is_steady_on_grids
-    # The position is NaN on a grid on which the pulse does not split.
-    split_count = at_last[at_last["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
-    never_splits = split_count.reindex(on_finest.index) == 0
+    never_splits = number_of_grids_with_split(at_last, part).reindex(on_finest.index) == 0
     is_decided = (on_finest == on_second_finest) & never_splits
     return on_finest.astype(object).where(is_decided, None)
+
+
+def number_of_grids_with_split(rows: pd.DataFrame, part: str) -> pd.Series:
+    """Return on how many grids each pulse of a part splits.
+
+    rows : rows of all parts and grids, at one station
+    """
+    # The position is NaN on a grid on which the pulse does not split.
+    return rows[rows["part"] == part].groupby(RUN_COLUMNS)["split_position"].count()
 
 
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     """Return the pulses of the part far at the last station, with columns on how they split.
 
-    split_at, coarse_split_at : position at which the pulse splits on its finest and on its second
-        finest grid, divided by the factor by which pulses are wider than those at the largest
-        gamma; NaN if the pulse does not split
+    split_at, coarse_split_at, third_split_at : position at which the pulse splits on its finest,
+        second finest and third finest grid, divided by the factor by which pulses are wider than
+        those at the largest gamma; NaN if the pulse does not split, or if there is no such grid
+    splits_only_on_finest : True if the pulse splits on its finest grid, and on no other one
     cells_in_weakening : number of cells in gamma d_c, the length over which the strength falls
     is_narrow : True at the largest gamma, at which pulses are narrowest
     is_steady : True if `steady_on_two_grids` is True at this tolerance
     """
     rows = rows_at_station(evidence, LAST)
     followed = finest_rows(rows, "far")
-    on_second_finest = finest_rows(rows, "far", coarser=1).reindex(followed.index)
     gamma = followed.index.get_level_values("gamma")
     weakening = followed.index.get_level_values("weakening")
-    # Stations are farther away by this factor, too.
+    # The last station is farther away by the factor by which pulses are wider.
     stretch = followed["sample_position"] / followed["sample_position"].min()
+    # Positions on the finest, the second finest and the third finest grid. A pulse without such a
+    # grid gets NaN.
+    split_at = [
+        finest_rows(rows, "far", coarser)["split_position"].reindex(followed.index) / stretch
+        for coarser in (0, 1, 2)
+    ]
+    splits_on_one_grid = number_of_grids_with_split(rows, "far").reindex(followed.index) == 1
     return followed.assign(
-        split_at=followed["split_position"] / stretch,
-        coarse_split_at=on_second_finest["split_position"] / stretch,
+        split_at=split_at[0],
+        coarse_split_at=split_at[1],
+        third_split_at=split_at[2],
+        splits_only_on_finest=splits_on_one_grid & split_at[0].notna(),
         cells_in_weakening=gamma * weakening * followed["cells"],
         is_narrow=gamma == gamma.max(),
         is_steady=steady_on_two_grids(evidence, "far", tolerance).eq(True),
     )
 
 
-def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
-    """Return how many pulses split, and the numbers of `ranges_of_splits` and `poorly_resolved`.
+def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
+    """Return how many pulses split, where they split, and how well the grid resolves the others.
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
         followed at the largest gamma
     followed, distance : number of these pulses that are also in the part far, and the distance to
         which they were followed there, at the largest gamma
     split : number of pulses of the part far that split on the finest grid
-    step_energy, step_split : fracture energy of the one pulse of the part far that belongs to the
-        part step and is not counted, and the position at which it splits
     damped, damped_steady : number of pulses that were followed with damping, and of steady ones
+
+    The other numbers are explained in the functions that are called.
 
     tolerance : largest relative change of speed and slip of a steady pulse
     """
@@ -285,22 +311,38 @@ def split_pulses(evidence: Evidence, tolerance: float) -> dict[str, float]:
     followed = followed_pulses(evidence, tolerance)
     is_counted = followed.index.isin(pulses.index)
     # The parameters of the pulses become columns.
-    counted, step = followed[is_counted].reset_index(), followed[~is_counted]
+    counted, not_counted = followed[is_counted].reset_index(), followed[~is_counted]
     split = counted[counted["split_at"].notna()]
     damped = steady_on_two_grids(evidence, "damped", tolerance)
     numbers = {
         "pulses": float(len(pulses)),
+        # Pulses are followed least far at the largest gamma.
         "near_distance": float(pulses["sample_position"].min()),
         "followed": float(len(counted)),
         "distance": float(followed["sample_position"].min()),
         "split": float(len(split)),
-        "step_energy": float(step["fracture_energy"].min()),
-        "step_split": float(step["split_at"].min()),
+        **split_of_step_pulse(not_counted),
         "damped": float(len(damped)),
         "damped_steady": float(damped.eq(True).sum()),
     }
     steady = counted[counted["is_steady"]]
     return numbers | ranges_of_splits(split) | poorly_resolved(steady)
+
+
+def split_of_step_pulse(step: pd.DataFrame) -> dict[str, float]:
+    """Return numbers on the split of the one pulse of the part far that belongs to the part step.
+
+    step_energy : its fracture energy
+    step_split : position at which it splits on its finest grid
+    step_only_on_finest : 1 if it splits on no other grid, and 0 otherwise
+
+    step : the row of this pulse in `followed_pulses`
+    """
+    return {
+        "step_energy": float(step["fracture_energy"].min()),
+        "step_split": float(step["split_at"].min()),
+        "step_only_on_finest": float(step["splits_only_on_finest"].all()),
+    }
 
 
 def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
@@ -311,8 +353,10 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
     narrow_gamma, narrow_energy : largest gamma and fracture energy of narrow pulses that split
     split_low, split_high : range of the positions at which narrow pulses split, on the finest grid
     coarse_split_low, coarse_split_high : the same range on the second finest grid
+    third_split_low, third_split_high : the same range on the third finest grid
     wide_gamma, wide_energy, wide_split_low, wide_split_high : the same numbers of wide pulses, on
         the finest grid
+    wide_only_on_finest : 1 if these wide pulses split on no other grid, and 0 otherwise
 
     split : rows of `followed_pulses` with the pulses that split on the finest grid
     """
@@ -324,10 +368,13 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
         "split_high": float(narrow["split_at"].max()),
         "coarse_split_low": float(narrow["coarse_split_at"].min()),
         "coarse_split_high": float(narrow["coarse_split_at"].max()),
+        "third_split_low": float(narrow["third_split_at"].min()),
+        "third_split_high": float(narrow["third_split_at"].max()),
         "wide_gamma": float(wide["gamma"].max()),
         "wide_energy": float(wide["fracture_energy"].max()),
         "wide_split_low": float(wide["split_at"].min()),
         "wide_split_high": float(wide["split_at"].max()),
+        "wide_only_on_finest": float(wide["splits_only_on_finest"].all()),
     }
 
 
@@ -432,15 +479,8 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     agrees = points["outcome"] == points["coarse_outcome"]
     points = points.assign(outcome=points["outcome"].where(agrees, "grids differ"))
     brittle = points[points["fracture_energy"] < 1.0]
-    tough = points[points["fracture_energy"] > 1.0]
     # The answer is None for outcomes that leave it open.
     decided = [STEADY_BY_OUTCOME.get(outcome) for outcome in brittle["outcome"]]
-    # The first three outcomes are reported even if no point has them.
-    point_counts = {"steady": 0, "growing": 0, "dying": 0} | dict(points["outcome"].value_counts())
-    further = {f"points that are {name}": float(count) for name, count in point_counts.items()}
-    further["points where the pulse dies, with more fracture energy than the layer can release"] = (
-        float((tough["outcome"] == "dying").sum())
-    )
     step = across_a_step(evidence)
     differences = [step["upwards_difference"], step["downwards_difference"]]
     has_settled = max(differences) < evidence.tolerance(id)
@@ -452,9 +492,23 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     return Qualitative(
         decided=decided,
         condition=not has_settled or on_map["splitting_points"] > 0.0,
-        further=further,
+        further=points_by_outcome(points),
         template_values=template_values,
     )
+
+
+def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
+    """Return how many points of `layer_map` have each outcome, by words for the table of claims.
+
+    points : rows of the map, whose column outcome has "grids differ" if the two grids disagree
+    """
+    # The first three outcomes are reported even if no point has them.
+    counts = {"steady": 0, "growing": 0, "dying": 0} | dict(points["outcome"].value_counts())
+    by_words = {f"points that are {name}": float(count) for name, count in counts.items()}
+    # Fracture energies are divided by the largest energy that the layer can release.
+    dies_by_energy = (points["outcome"] == "dying") & (points["fracture_energy"] > 1.0)
+    words = "points where the pulse dies, with more fracture energy than the layer can release"
+    return by_words | {words: float(dies_by_energy.sum())}
 
 
 def map_numbers(evidence: Evidence) -> dict[str, float]:
@@ -484,10 +538,9 @@ def split_distances(evidence: Evidence) -> list[float]:
     """Return for each point of `layer_map` whose pulses would split the distance at which they do.
 
     A point is a pair of gamma and fracture energy. Pulses of the part far are followed farther than
-    those of the map, and some of them split. A pulse splits more easily if its fracture energy is
-    smaller. So the pulses of a point would split if, on any grid, a pulse of the part far splits
-    that has the same gamma and pre-stress, and at least the fracture energy of the point. The
-    smallest distance at which such a pulse splits counts.
+    those of the map. We assume that a pulse of the map would split if a pulse of the part far with
+    the same gamma and pre-stress splits on any grid, and if its fracture energy is equal or larger,
+    because pulses split more easily at a smaller one. The smallest distance of such splits counts.
     """
     points = evidence.tables["layer_map"]
     far = rows_at_station(evidence, LAST).query("part == 'far'").dropna(subset=["split_position"])
@@ -509,18 +562,13 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
 
     Most of them come from the functions that are called, which explain them. The others are:
 
-    QUANTITY_low, QUANTITY_high : smallest and largest value of each quantity
+    QUANTITY_low, QUANTITY_high : smallest and largest value of a quantity over all its pulses
     QUANTITY_change : largest relative change by refinement, from the second finest to the finest
         grid
     map_NAME : a number of `map_numbers`
     crossings, brittle_energy : the constants CROSSINGS_OF_TRANSITION and BRITTLE_ENERGY
     crossing_high : longest time for which a point slides, divided by the crossing time
         (`sliding_in_crossings`)
-
-    Two of the quantities are for runs in which the top may rise (the part free):
-
-    free : time for which a point slides, divided by the crossing time
-    longer : time for which a point slides, divided by the time if the top cannot rise
     """
     rows = rows_at_station(evidence, LAST)
     pulses = finest_rows(rows, "pulse")
@@ -534,6 +582,8 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
         **quantities_of_all_pulses(pulses),
         **quantities_at_one_level(pulses),
         **quantities_in_one_dimension(pulses),
+        # If the top may rise (part free), a point slides for these times. The first is divided by
+        # the crossing time, and the second by the time for which it slides if the top is held.
         "free": sliding_in_crossings(finest_rows(rows, "free")),
         "longer": times_longer_with_free_top(rows),
     }
@@ -553,6 +603,8 @@ def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
     gamma_low, thinnest_formula : smallest gamma, and pulse width by the formula at this gamma
     """
     at_level = with_varied_energy(pulses)
+    # All these pulses have the same level, so the formula gives them the same front speed. The
+    # width by the formula depends on the level and gamma only.
     return {
         "level": float(at_level.index.get_level_values("tau0")[0]),
         "formula_speed": float(at_level["paper_speed"].max()),
@@ -587,8 +639,8 @@ def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     waves : fraction of the released energy that leaves as waves
     """
     gamma = pulses.index.get_level_values("gamma")
-    # At s times the slip of the formula, the layer releases the energy 4 s (1 - s). The unit is the
-    # largest energy that it can release, by which the fracture energy is divided, too.
+    # If s is the slip divided by that of the formula, the layer releases the energy 4 s (1 - s).
+    # The unit is the largest energy that it can release, as for the fracture energy.
     relative_slip = pulses["pulse_slip"] / pulses["paper_pulse_slip"]
     released_energy = 4.0 * relative_slip * (1.0 - relative_slip)
     return {
@@ -662,13 +714,13 @@ def largest_speeds(evidence: Evidence) -> dict[str, float]:
 def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
-    The numbers of `split_pulses`, which say how many of them split and where, are among these.
+    The numbers of `numbers_on_splits`, which say how many of them split and where, are among these.
 
     from_near_slip : largest relative change of the slip between the first and the last station, of
         pulses that do not split
     drawn_split : position at which the pulse that a figure shows splits
     """
-    numbers = split_pulses(evidence, evidence.tolerance("layer_regimes"))
+    numbers = numbers_on_splits(evidence, evidence.tolerance("layer_regimes"))
     numbers["drawn_split"] = split_of_drawn_pulse(evidence)
     # With an infinite tolerance, a pulse counts as steady if it does not split and if no point
     # slides again behind it.
@@ -686,17 +738,15 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
 def split_of_drawn_pulse(evidence: Evidence) -> float:
     """Return where the pulse that a figure shows splits on its finest grid, in units of H.
 
-    NaN if it does not split.
+    NaN if it does not split on this grid.
     """
     # The figure shows the part field. The part far has the same pulse, which is followed farther.
     drawn = evidence.tables["layer"].query("part == 'field'").iloc[0]
-    far = rows_at_station(evidence, LAST).query("part == 'far'").sort_values("cells")
+    far = finest_rows(rows_at_station(evidence, LAST), "far").reset_index()
     parameters = ["gamma", "tau0", "weakening"]
     drawn_parameters = drawn[parameters].to_numpy(float)
     is_drawn = np.isclose(far[parameters].to_numpy(float), drawn_parameters).all(axis=1)
-    # The finest grid comes last.
-    positions = far["split_position"][is_drawn].dropna()
-    return float(positions.iloc[-1]) if len(positions) else np.nan
+    return float(far["split_position"][is_drawn].max())
 
 
 def spread_with_level(pulses: pd.DataFrame) -> float:

@@ -65,7 +65,7 @@ class Entry(SimpleNamespace):
         return "; ".join(part for part in parts if part)
 
     def _other_tolerances(self) -> list[str]:
-        """Return the verdicts at similar tolerances, and at the earlier tolerance.
+        """Return the verdicts at other tolerances nearby (TOLERANCE_BAND), and at the earlier one.
 
         A text is, for example, "with a tolerance below 0.14: not reproduced".
         """
@@ -115,11 +115,13 @@ class Entry(SimpleNamespace):
 
     def _sentence_on_deviation(self) -> str:
         """Return a sentence with the deviation and its uncertainty."""
-        uncertainty = number(self.uncertainty)
         if self.deviation_uncertainty is not None:
             uncertainty = percent(self.deviation_uncertainty)
         elif self._has_relative_deviation():
+            # The uncertainty of the measured value is divided by the predicted value, too.
             uncertainty = percent(self.uncertainty / abs(self.predicted))
+        else:
+            uncertainty = number(self.uncertainty)
         deviation = "median deviation" if self.kind == "approximate" else "deviation"
         # The text is, for example, "median 12 %, tolerance 20 %".
         deviation_and_tolerance = self.compared_text().removeprefix("median ")

@@ -188,7 +188,8 @@ def fields_of_claim(
     claim : result about the claim
     entry : texts of the claim in manuscript/claims.yaml
     place : sections and figures of the paper with the claim; empty if there is none
-    explanations : see `all_claims`
+    explanations : a sentence for each verdict, for claims that are judged at many combinations of
+        choices
     """
     written = {name: value for name, value in entry.items() if name not in TEXTS_NOT_WRITTEN}
     fields = DEFAULT_FIELDS | written
@@ -214,7 +215,10 @@ def final_texts(
     """Return the note of a claim and the reason for its verdict (why), as final texts.
 
     fields : all fields of the claim. Its note and reason still contain expressions in braces.
-    claim, entry, explanations : see `fields_of_claim`
+    claim : result about the claim
+    entry : texts of the claim in manuscript/claims.yaml
+    explanations : a sentence for each verdict, for claims that are judged at many combinations of
+        choices
     """
     # The expressions may use all fields, and some values that are not written to claims.json.
     values = {**fields, **claim.sentence_values()}
@@ -227,8 +231,8 @@ def final_texts(
         explanation = explanations[fields["verdict"]]
         why = fill_in_one_line(explanation, {**values, "why": why, "doubt": doubt})
     # If the reason is still empty, the claim gets one from its numbers.
-    formatted_claim = with_texts({**fields, "why": why})
-    return {"note": note, "why": formatted_claim.why_text()}
+    ledger_entry = with_texts({**fields, "why": why})
+    return {"note": note, "why": ledger_entry.why_text()}
 
 
 def fill_in_one_line(text: str, values: Mapping) -> str:

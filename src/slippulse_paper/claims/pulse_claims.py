@@ -73,11 +73,11 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
     """Judge a claim whose rule is a condition that must hold in each run of some sweeps.
 
     In each run the two finest lattices decide. If they disagree or cannot decide, the exact
-    solution does (`Evidence.holds_in_runs`). The rule may also ask for additional numbers: counts
-    of regimes, and values of expressions over the runs of the first sweep.
+    solution does (`Evidence.holds_in_runs`).
 
     keys : fields of the rule (`Always`), such as the sweeps, the condition that must hold (holds),
-        and the regimes of exact solutions in which it holds (ends)
+        the condition under which lattices can decide (decidable), and the regimes of exact
+        solutions in which the claim holds (ends)
     """
     rule = Always(**keys)
     # The condition may contain {tolerance}, the tolerance of the claim, and {steady}, the largest
@@ -88,16 +88,26 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
         holds = f"regime in {rule.ends}"
     decided: list[bool | None] = []
     for sweep in rule.sweeps:
-        decided += evidence.holds_in_runs(sweep, rule.where, holds, rule.decidable, rule.ends)
+        decided += evidence.holds_in_runs(
+            sweep, where=rule.where, holds=holds, decidable=rule.decidable, ends=rule.ends
+        )
+    return Qualitative(decided=decided, further=numbers_of_rule(evidence, rule))
+
+
+def numbers_of_rule(evidence: Evidence, rule: Always) -> dict[str, float]:
+    """Return the additional numbers of a rule, by words for the table of claims.
+
+    They are values of expressions over the runs of the first sweep (numbers), and the number of
+    runs with each regime among those that meet a condition (counted).
+    """
     first_sweep = evidence.tables[rule.sweeps[0]]
-    further = {
-        words: float(value_of(first_sweep, expression))
-        for words, expression in rule.numbers.items()
-    }
+    by_words = {}
+    for words, expression in rule.numbers.items():
+        by_words[words] = float(value_of(first_sweep, expression))
     for words, condition in rule.counted.items():
         regimes = evidence.finest(*rule.sweeps, where=condition)["regime"].value_counts()
-        further |= {f"{words}: {regime}": float(count) for regime, count in regimes.items()}
-    return Qualitative(decided=decided, further=further)
+        by_words |= {f"{words}: {regime}": float(count) for regime, count in regimes.items()}
+    return by_words
 
 
 def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
@@ -234,9 +244,11 @@ def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
         final_slips = pulses[["pulse_slip"]].to_numpy()
         deviations = (final_slips / steady_slips - 1.0).abs()
         is_settled = deviations["pulse_slip"] <= evidence.tolerance(id)
-        # The answer stays open if a changed configuration has no steady pulse to compare with.
-        has_steady_pulse = steady_slips["pulse_slip"].notna()
-        answers_by_lattice.append(is_settled.astype(object).where(has_steady_pulse, None))
+        # The answer stays open if a changed configuration has no steady pulse to compare with, or
+        # if its run ends before the first stick, at which a crack turns into a pulse.
+        has_become_pulse = pulses["transition_time"].notna().to_numpy()
+        is_decided = steady_slips["pulse_slip"].notna() & has_become_pulse
+        answers_by_lattice.append(is_settled.astype(object).where(is_decided, None))
         deviations_by_lattice.append(deviations)
     on_finest, on_middle, _ = answers_by_lattice
     largest = deviations_by_lattice[0].max()
@@ -290,6 +302,7 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
     claim = evidence.equation(id, in_zero_prestress, quantity="strain_left", predicted="0")
     return replace(
         claim,
+        # The claim shows in how many runs the additional requirement holds or fails.
         counts=changed_if_strained(claim.tolerance).counts(),
         extra_verdict=lambda tolerance: changed_if_strained(tolerance).verdict(),
     )

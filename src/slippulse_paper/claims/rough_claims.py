@@ -10,13 +10,6 @@ import pandas as pd
 from .evidence import Evidence
 from .kinds import Qualitative
 
-# Columns that the texts quote of three ensembles under a stress boundary: the one with the roughest
-# pre-stress, the one with the smoothest, and the one with the highest level.
-QUOTED_COLUMNS = {
-    "rough": ("deviation", "survival", "low", "high", "predicted", "stop"),
-    "quiet": ("deviation", "velocity_deviation", "velocity_predicted"),
-    "above": ("level", "pulses", "deaths", "cracks"),
-}
 # Columns that name an ensemble.
 FIELD_COLUMNS = ["level", "deviation", "correlation_length", "hurst"]
 # Ensembles with fewer deaths have death rates with wide confidence intervals.
@@ -93,7 +86,6 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
 
     confidence, tail_... : from runs over a long distance, confidence level and interval of the
         exponent with which the survival of pulses falls as a power of the distance
-    rough_..., quiet_..., above_... : the columns QUOTED_COLUMNS of three ensembles
 
     The others are explained in the functions that are called.
     """
@@ -112,15 +104,27 @@ def rough_numbers(evidence: Evidence) -> dict[str, float]:
         "tail_low": long_distance["exponent_low"],
         "tail_high": long_distance["exponent_high"],
     }
-    quoted = {
-        "rough": stress.loc[stress["deviation"].idxmax()],
-        "quiet": stress.loc[stress["deviation"].idxmin()],
-        "above": stress.loc[stress["level"].idxmax()],
-    }
-    for name, ensemble in quoted.items():
-        numbers |= {f"{name}_{column}": ensemble[column] for column in QUOTED_COLUMNS[name]}
-    numbers |= balance_numbers(checks)
+    numbers |= quoted_stress_ensembles(stress) | balance_numbers(checks)
     return {name: float(value) for name, value in numbers.items()}
+
+
+def quoted_stress_ensembles(stress: pd.DataFrame) -> dict[str, float]:
+    """Return the numbers that the texts quote on three ensembles under a stress boundary.
+
+    The ensembles are the one with the largest standard deviation of the pre-stress (rough), the one
+    with the smallest (quiet), and the one with the highest level (above).
+    """
+    rough = stress.loc[stress["deviation"].idxmax()]
+    rough = rough[["deviation", "survival", "low", "high", "predicted", "stop"]]
+    quiet = stress.loc[stress["deviation"].idxmin()]
+    quiet = quiet[["deviation", "velocity_deviation", "velocity_predicted"]]
+    above = stress.loc[stress["level"].idxmax()]
+    above = above[["level", "pulses", "deaths", "cracks"]]
+    return {
+        **rough.add_prefix("rough_"),
+        **quiet.add_prefix("quiet_"),
+        **above.add_prefix("above_"),
+    }
 
 
 def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
@@ -155,12 +159,14 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
     worst_survival, worst_low, worst_high : fraction of its pulses that survive to the end, and the
         confidence interval of this fraction
     calm_rate : upper bound of the death rate over all ensembles without deaths
+
+    study : the table rough_prestress, which also has the survival curves of the ensembles
     """
     calm = ensembles[ensembles["deaths"] == 0]
     worst = ensembles.loc[ensembles["rate"].idxmax()]
-    # The last row of its survival curve, whose rows are in the order of the distance.
     is_curve = (study["part"] == "survival") & (study["boundary"] == "displacement")
     is_worst = (study[FIELD_COLUMNS] == worst[FIELD_COLUMNS]).all(axis=1)
+    # The rows of the survival curve are in the order of the distance.
     end_of_curve = study[is_curve & is_worst].iloc[-1]
     numbers = {"calm_rate": RULE_OF_THREE / calm["distance"].sum()}
     numbers |= {f"worst_{column}": worst[column] for column in ("level", "deviation", "stop")}
@@ -171,6 +177,7 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
     """Return numbers that show how accurate the measured death rates are.
 
     grid_..., grid_fine_... : spacing dx and number of deaths on the coarsest and the finest lattice
+    grid_pulses : number of pulses on each lattice
     near_..., far_... : death rate in the near and in the far half of a longer rough pre-stress, its
         confidence interval, and the distance at which the half ends (stop)
     """
@@ -193,18 +200,17 @@ def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
 
 
 def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str, float]:
-    """Return how near final slip is to that of steady pulses.
+    """Return how much the final slip of pulses differs from the slip of steady pulses.
 
-    short_..., smooth_... : the ensembles with the shortest and the longest correlation length,
-        among those whose slip was recorded (the others have no memory)
-    ..._correlation_length : of the rough pre-stress
-    short_mean : median relative deviation of the slip from that of a steady pulse at the mean
-        pre-stress
-    smooth_local : the same for a steady pulse at the local pre-stress
-    memory : distance after which a pulse has forgotten a change of the pre-stress, at the level of
-        the first of these ensembles
+    Two ensembles are quoted: the one whose pre-stress has the shortest correlation length (short),
+    and the one with the longest (smooth).
+
+    short_mean : median relative difference from a steady pulse in the mean pre-stress
+    smooth_local : the same for a steady pulse in the local pre-stress
+    memory : distance after which a pulse of the short ensemble has forgotten a change of pre-stress
     forgotten : largest relative change of the slip by a bump that is farther away than the memory
     """
+    # Ensembles whose slip was not recorded have no value in the column memory.
     with_slip = ensembles.dropna(subset=["memory"]).sort_values("correlation_length")
     shortest, longest = with_slip.iloc[0], with_slip.iloc[-1]
     # In these rows the column distance has the distance from the bump, in units of the memory, and

@@ -62,13 +62,14 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
     apart : distance between the fronts at the time at which the drawn arrow for T_trans ends
     """
     study = evidence.tables["published_figure"]
+    # The best fits to all readings of the left panel, with the arrows and without them.
     with_arrows = infer_parameters(study, part="arrows")["best"]
     without_arrows = infer_parameters(study)["best"]
     further: dict[str, float] = {}
-    for words, fit in (("with", with_arrows), ("without", without_arrows)):
+    for word, fit in (("with", with_arrows), ("without", without_arrows)):
         for name, excess in excess_lengths(evidence, fit).items():
-            statement = evidence.readings[name]["statement"]
-            further[f"{statement}, drawn value minus value of the best fit {words} arrows"] = excess
+            arrow = evidence.readings[name]["statement"]
+            further[f"{arrow}, drawn value minus value of the best fit {word} arrows"] = excess
     readings = readings_by_name(evidence)
     # The path of the right front in the figure is a straight line.
     front_position = readings["intercept"] + readings["front_speed"] * readings["arrow_time"]
@@ -77,6 +78,7 @@ def judge_arrows(evidence: Evidence, id: str) -> Reading:
         # The left front is as far from x = 0.
         "apart": 2.0 * front_position,
     }
+    # The chi-square and the degrees of freedom that the two arrows add.
     return Reading(
         tolerance=evidence.tolerance(id),
         chi_square=with_arrows["chi2"] - without_arrows["chi2"],

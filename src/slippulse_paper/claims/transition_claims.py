@@ -127,10 +127,10 @@ def simulated_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return exact solutions at each combination of the choices that the paper leaves open.
 
-    The combination with which we drew figure 5 comes first, because claims show the numbers of the
-    first one.
+    The choices with which we drew figure 5 come first, because claims show the numbers of the first
+    combination.
     """
-    # The names of these choices, and their values in the first run of figure 5.
+    # The names of the open choices, and their values in the first run of figure 5.
     open_choices = ["release", "damping_ratio"]
     first_run = evidence.tables[f"scaling_{boundary}"].iloc[0]
     choices_of_figure: Chosen = {name: first_run[name] for name in open_choices}
@@ -140,17 +140,15 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
-    runs_of_figure: list[Runs] = []
-    other_runs: list[Runs] = []
+    exact = []
     for values, rows in table.groupby(open_choices):
         choice: Chosen = dict(zip(open_choices, values, strict=True))
-        is_of_figure = choices_of_figure.items() <= choice.items()
-        group = runs_of_figure if is_of_figure else other_runs
         # Runs with a pre-stress at which blocks would slide back are left out. In a changed
         # configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
-        group.append(Runs(choice | {"solution": "exact"}, [rows]))
-    return runs_of_figure + other_runs
+        exact.append(Runs(choice | {"solution": "exact"}, [rows]))
+    # False comes before True, so the choices of figure 5 come first. Otherwise the order is kept.
+    return sorted(exact, key=lambda runs: not choices_of_figure.items() <= runs.choice.items())
 
 
 @cache
@@ -165,6 +163,7 @@ def transitions(evidence: Evidence) -> list[Runs]:
     runs_by_criterion = {FIRST_STICK: lattices + exact, PRINTED_SLIP: lattices}
     transition_runs = []
     for criterion, runs_of_criterion in runs_by_criterion.items():
+        # The columns of this criterion become the columns time and length.
         new_names = COLUMNS_BY_CRITERION[criterion]
         for choice, tables in runs_of_criterion:
             renamed = [table.rename(columns=new_names) for table in tables]
@@ -177,12 +176,14 @@ def arrests(evidence: Evidence) -> list[Runs]:
     """Return runs under a stress boundary, measured when the left front counts as arrested.
 
     In an exact solution this is when the front has covered a fraction of |x_minus|. On a lattice it
-    is at the last release.
+    is at the last release. One run is enough for each level, as `widest_at_each_level` explains.
     """
     arrest_runs = []
     for choice, tables in exact_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, TRANSITION_COLUMNS) for table in tables]
         arrest_runs.append(Runs(choice, widest))
+    # The choices of exact solutions include the nucleation and the fraction. Those of lattices get
+    # them here.
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
@@ -316,7 +317,7 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
 
     quantity : "time" or "length"
     """
-    combinations, from_exact, arrow_ratio = judge_estimate(evidence, id, "displacement", quantity)
+    judged = judge_estimate(evidence, id, "displacement", quantity)
     # Count the runs that reach the slip by which the paper defines T_trans.
     runs = evidence.finest("scaling_displacement")
     at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
@@ -330,8 +331,7 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
             is_within_tolerance.sum()
         ),
     }
-    # Values for the sentences of the claim.
-    template_values = readings_by_name(evidence) | deviations_at_first_stick(combinations)
+    template_values = readings_by_name(evidence) | deviations_at_first_stick(judged.combinations)
     template_values |= {
         "of_runs": len(ratio),
         "reach": ratio.count(),
@@ -339,9 +339,10 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
         "reach_literally": runs["slip_time_nucleation"].count(),
     }
     return over_choices(
-        combinations,
-        from_exact=from_exact,
-        further=further | arrow_ratio,
+        judged.combinations,
+        from_exact=judged.from_exact,
+        # The claim also shows the arrow of figure 4, divided by the estimate.
+        further=further | judged.arrow_ratio,
         template_values=template_values,
     )
 
@@ -439,19 +440,18 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
     """Judge whether the left front takes longer to its arrest than it would take at speed 1.
 
     The paper estimates the time by this speed, and says that the estimate is too short. The
-    tolerance of this claim is 0, which sets no limit to the additional time. The ledger also asks
-    for the verdict at an earlier tolerance, which was such a limit.
+    tolerance of this claim is 0, and the additional time is not limited. An earlier tolerance, at
+    which the ledger also shows the verdict, limited the additional time.
     """
 
     def judge(tables: list[pd.DataFrame]) -> Qualitative:
-        """Judge if the arrest takes longer than at speed 1, and by how much if there is a limit.
+        """Judge the runs of one combination. A tolerance above 0 limits the additional time."""
 
-        The limit is the tolerance. The tolerance 0 means that there is none.
-        """
-        return replace(
-            takes_longer(tables),
-            extra_verdict=lambda tolerance: takes_longer(tables, tolerance or np.inf).verdict(),
-        )
+        def verdict_with_limit(tolerance: float) -> str:
+            limit = tolerance if tolerance > 0.0 else np.inf
+            return takes_longer(tables, limit).verdict()
+
+        return replace(takes_longer(tables), extra_verdict=verdict_with_limit)
 
     runs = arrests(evidence)
     exact = pd.concat([tables[0] for choice, tables in runs if choice["solution"] == "exact"])
@@ -464,15 +464,19 @@ def transition_time_underestimated(evidence: Evidence, id: str) -> OverChoices:
 def takes_longer(tables: list[pd.DataFrame], limit: float = np.inf) -> Qualitative:
     """Judge in each run whether the left front takes longer to its arrest than at speed 1.
 
+    A run is undecided if its two finest lattices disagree, or if the front has not moved.
+
+    tables : one table for each lattice, the finest first, or a single table of exact solutions
     limit : largest allowed additional time, as a fraction of the time at speed 1
     """
-    holds = []
+    answers = []
     for table in tables[:2]:
-        # At speed 1 the time equals the distance.
+        # At speed 1 the time equals the distance. The ratio is NaN if the front has not moved.
         additional_time = table["time"] / table["covered"] - 1.0
-        holds.append((additional_time > 0.0) & (additional_time <= limit))
-    # The two finest lattices must agree. An exact solution is one table, which agrees with itself.
-    return Qualitative(decided=agreed_answers(holds[0], holds[-1]))
+        holds = (additional_time > 0.0) & (additional_time <= limit)
+        answers.append(holds.astype(object).where(additional_time.notna(), None))
+    # A single table of exact solutions is the first and the last one, and agrees with itself.
+    return Qualitative(decided=agreed_answers(answers[0], answers[-1]))
 
 
 def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:

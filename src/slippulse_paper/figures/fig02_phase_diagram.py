@@ -116,11 +116,12 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def numbers_of_regimes(profiles: list[pd.DataFrame]) -> dict[tuple[str, str], str]:
-    """Return the number of each drawn profile as a text, by its boundary and regime.
+    """Return the number of each drawn velocity profile as a text, by its boundary and regime.
 
     The text is put in front of the name of the regime in the plane.
     """
     numbers = {}
+    # There may be fewer profiles than numbers.
     for number, rows in zip(NUMBERS, profiles, strict=False):
         boundary, regime = rows[["boundary", "regime"]].iloc[0]
         numbers[boundary, regime] = f"{number} "
@@ -134,27 +135,28 @@ def legend_entries(table: pd.DataFrame) -> list[Line2D]:
     # At the end of such a run, the regime that theory predicts has not yet been reached.
     label = "not settled by its end"
     handles.append(entry(label, marker="o", markerfacecolor="white", **MARK))
-    if table.loc[table["role"].isin(["run", "symmetric"]), "run_flags"].notna().any():
+    if table["run_flags"].notna().any():
         handles.append(entry("flagged", marker="x", **MARK))
     return handles
 
 
 def draw_regimes_of_equal_levels(axes: Axes, areas: pd.DataFrame) -> None:
-    """Colour and label the regimes of a negative and of a positive pre-stress on both sides.
+    """Colour and label the regimes along an axis of the pre-stress that is the same on both sides.
 
-    They are the regimes of the two quadrants of the plane in which both levels have the same sign.
+    There is one regime for negative and one for positive pre-stress. In the plane of the pre-stress
+    on the left and on the right, they are the two quadrants on the diagonal.
 
     areas : corners of the areas of the plane, in the columns left and right; an area has a number
         in the column series
     """
     for _, corners in areas.groupby("series"):
         centre_left, centre_right = corners[["left", "right"]].mean()
-        # Only the centres of these two quadrants have equal levels.
-        if centre_left == centre_right:
+        is_on_diagonal = centre_left == centre_right
+        if is_on_diagonal:
             regime = corners["regime"].iloc[0]
             colour, text = LOOKS[regime]
-            left_levels = corners["left"]
-            axes.axvspan(left_levels.min(), left_levels.max(), facecolor=tint(colour), gid=regime)
+            levels = corners["left"]
+            axes.axvspan(levels.min(), levels.max(), facecolor=tint(colour), gid=regime)
             look: Look = {"ha": "center", "va": "bottom", "xycoords": ("data", "axes fraction")}
             axes.annotate(text.replace("\n", " "), (centre_left, 1.02), **look)
 

@@ -80,11 +80,16 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     draw_prestress_inset(length_axes, runs, level_column)
     length_axes.set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
-        look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
-        # The scale of left is stretched, and ticks at equal distances would overlap.
-        look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
-        bar = figure.colorbar(colour_scale(column), ax=panels, **look)
-        bar.set_label(f"${SYMBOLS[column]}$")
+        add_colour_bar(figure, panels, column)
+
+
+def add_colour_bar(figure: Figure, panels: list[Axes], column: str) -> None:
+    """Add the colour bar of a parameter below a column of panels."""
+    look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
+    # The scale of left is stretched, and ticks at equal distances would overlap.
+    look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
+    bar = figure.colorbar(colour_scale(column), ax=panels, **look)
+    bar.set_label(f"${SYMBOLS[column]}$")
 
 
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:

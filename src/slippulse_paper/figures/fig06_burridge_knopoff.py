@@ -5,6 +5,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
 from slippulse.data.point import point
@@ -65,7 +66,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     drawing.
     """
     panels = []
-    for boundary in ROW_DISTANCES:
+    for boundary in ("displacement", "stress"):
         run = point(data[f"burridge_knopoff_{boundary}"], 0)
         rows = block_states(run)
         rows["scale"] = displacement_scale(rows)
@@ -204,24 +205,33 @@ def draw(table: pd.DataFrame) -> Figure:
         draw_prestress_strip(strip, rows[rows["row"] == 0])
         strip.set_title(TITLES[name].format(**rows.iloc[0]), loc="center")
         panel_letter(strip, letter)
+    legend_below(figure, legend_entries(), columns=4)
+    return figure
+
+
+def legend_entries() -> list[Line2D]:
+    """Return a legend entry for each state of a block, and for the block that stops the front."""
     square: Look = {"marker": "s", "markersize": 6.0, "markeredgecolor": "0.2"}
     handles = [
         entry(name, markerfacecolor=colour, **square) for name, colour in STATE_COLOURS.items()
     ]
     frame: Look = {"markerfacecolor": "none", "markeredgecolor": BLACK, "markeredgewidth": 1.8}
     handles.append(entry("never released: stops the left front", **(square | frame)))
-    legend_below(figure, handles, columns=4)
-    return figure
+    return handles
 
 
 def draw_prestress_strip(axes: Axes, blocks: pd.DataFrame) -> None:
-    """Draw the pre-stress of each block as a bar."""
+    """Draw the pre-stress of each block as a bar, with a tick at the level on the left."""
     prestress, left_level = blocks["prestress"], blocks["left"].iloc[0]
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.bar(blocks["x"], prestress, width=BLOCK_WIDTH, color=GREY)
     axes.set_ylabel(r"$\tau$", rotation=0, ha="right", va="center")
-    lowest = min(0.0, prestress.min())
-    axes.set(ylim=(lowest - 0.15, 1.12), yticks=sorted({0.0, 1.0, left_level}))
+    bottom, top = min(0.0, prestress.min()) - 0.15, 1.12
+    ticks = [0.0, 1.0]
+    # The level on the left has a tick if its number does not overlap that of 0 or 1.
+    if min(abs(left_level), abs(left_level - 1.0)) > 0.2 * (top - bottom):
+        ticks.append(left_level)
+    axes.set(ylim=(bottom, top), yticks=ticks)
     axes.tick_params(axis="x", length=0, labelbottom=False)
     axes.tick_params(axis="y", labelsize=7)
     axes.spines[["right", "top", "bottom"]].set_visible(False)

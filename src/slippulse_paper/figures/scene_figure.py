@@ -119,7 +119,7 @@ def draw(table: pd.DataFrame) -> Figure:
     prestress_axes, map_axes = upper.subplots(1, 2, sharey=True, width_ratios=(0.16, 1.0))
     space_time.draw_profile(prestress_axes, rows_by_role)
     space_time.draw_map(map_axes, rows_by_role)
-    map_axes.legend(loc="upper left")
+    space_time.add_map_legend(map_axes)
     panel_letter(prestress_axes, "a")
     # A dollar sign in the title is a character, and does not begin a formula.
     title = str(rows_by_role["title"]["series"].iloc[0]).replace("$", r"\$")
@@ -137,7 +137,8 @@ def draw_field(
     """Draw a field at the end, and as dashed lines its largest values in exact steady pulses.
 
     field : "slip_velocity" or "slip"
-    steady_pulses : the rows of `steady_rows` for this field
+    steady_pulses : the rows of `steady_rows` for this field; a dashed line runs from x = 0 to the
+        position of a row, which is the end of the panel on the side of the pulse
     """
     rows = rows_by_role["profile"][rows_by_role["profile"]["series"] == field]
     axes.axhline(0.0, color=GREY, linewidth=0.5)

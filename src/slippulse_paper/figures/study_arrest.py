@@ -46,7 +46,11 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 
     Times are divided by the balance distance |x_minus|, which is the length of the path.
     """
-    runs = tables["arrest"]
+    # An overlay may add runs with other parameters. The exact paths are for the first run whose
+    # left front stops.
+    runs = tables["arrest"].query("left < 0.0 and right == 0.0")
+    scene = runs[["left", "right", "width", "release"]]
+    runs = runs[(scene == scene.iloc[0]).all(axis=1)]
     # The paper estimates that the transition takes the time |x_minus|, since the wave speed is 1.
     balance_distance = runs["paper_transition_time"]
     times = runs[["left", "right", "width", "damping_ratio", "dx", "run_flags"]].assign(

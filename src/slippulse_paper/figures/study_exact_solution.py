@@ -80,6 +80,7 @@ def _add_edge_legend(axes: Axes, dx: float) -> None:
         "o": rf"front, lattice, $\Delta x = {dx:g}$",
         "s": "trailing edge, lattice",
     }
+    # Curves without points only give entries of the legend.
     for line_style, label in label_of_style.items():
         axes.plot([], [], line_style, color=GREY, label=label, **OPEN_MARKER)
     axes.legend(loc="upper left", fontsize=SMALL_TEXT)
@@ -114,5 +115,6 @@ def _draw_differences(axes: Axes, rows: pd.DataFrame) -> None:
     style.draw_first_order(axes, rows["dx"], slope=1.5, colour=GREY)
     axes.set_ylabel("mean |lattice $-$ exact| / mean")
     style.few_ticks(axes.xaxis, np.unique(rows["dx"]))
+    # The legend stands below the lines.
     axes.set_ylim(0.35 * axes.get_ylim()[0], None)
     axes.legend(loc="lower right", ncols=2)

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from slippulse.plotting import style
-from slippulse.plotting.style import BLACK, BLUE, GREY, OPEN_MARKER, ORANGE, PAGE_WIDTH
+from slippulse.plotting.style import BLACK, BLUE, GREY, OPEN_MARKER, ORANGE, PAGE_WIDTH, Look
 
 from .shared import scaling
 
@@ -79,7 +79,12 @@ def draw_distributions(axes: Axes, runs: pd.DataFrame, quantity: str) -> None:
             predicted = sound[f"{reference}_transition_{quantity}"]
             ratio = sound[f"transition_{quantity}"] / predicted
             error = (ratio - 1.0).dropna().abs()
-            axes.ecdf(error, color=colour, linestyle=line, label=f"{boundary_name}, {name}")
+            look: Look = {"color": colour, "label": f"{boundary_name}, {name}"}
+            if error.empty:
+                # There is no run to draw, so only the legend gets an entry.
+                axes.plot([], [], line, **look)
+            else:
+                axes.ecdf(error, linestyle=line, **look)
     symbol = scaling.QUANTITIES[quantity]
     axes.set(xscale="log", xlabel=f"|measured / predicted ${symbol}$ $-$ 1|")
     axes.set(ylim=(0.0, 1.0), ylabel="fraction of runs with a smaller error")

@@ -35,6 +35,7 @@ def draw(table: pd.DataFrame) -> Figure:
         style.draw_regimes(axes, runs[runs["law"].isin(laws)], "strength")
         axes.set(xlabel=label, ylabel=r"pre-stress $\tau_0$", ylim=(0.1, 0.9))
         axes.set_title(title)
+    # Friction weakens with slip velocity on the left of this line, and strengthens on its right.
     planes[0].axvline(0.0, color=GREY, linewidth=0.6, linestyle=":")
     draw_speeds(speed_axes, rows_by_role["selection"])
     handles = style.legend_handles(planes)
@@ -59,6 +60,7 @@ def draw_speeds(axes: Axes, runs: pd.DataFrame) -> None:
     for marker, dx in zip(MARKERS, sorted(runs["dx"].unique()), strict=False):
         label = rf"lattice, $\Delta x = {dx:g}$"
         axes.plot([], [], marker, color=GREY, label=label, **OPEN_MARKER)
+    # This line is at the wave speed.
     axes.axhline(1.0, color=BLACK, linewidth=0.6, linestyle=":")
     axes.set(xscale="log", xlabel=r"$d_c/\Delta x$", ylabel=r"front speed $v$")
     style.few_ticks(axes.xaxis, (1, 2, 4, 8))

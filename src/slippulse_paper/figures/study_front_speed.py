@@ -137,9 +137,11 @@ def _draw_uniform(axes: Axes, rows: pd.DataFrame) -> None:
     rows = rows.assign(scaled_speed=rows["speed"] * np.sqrt(1.0 - rows["left"] ** 2))
     for (ratio, group), marker in zip(rows.groupby("damping_ratio"), MARKERS, strict=False):
         line = group[group["role"] == "theory"]
-        look: Look = {"color": colour("damping_ratio", ratio), "gid": f"theory {ratio:g}"}
-        axes.plot(line["left"], line["scaled_speed"], **look)
-        _mark_runs(axes, group, "left", "scaled_speed", marker, f"{ratio:g}")
+        look: Look = {"color": colour("damping_ratio", ratio)}
+        axes.plot(line["left"], line["scaled_speed"], gid=f"theory {ratio:g}", **look)
+        _mark_runs(axes, group, "left", "scaled_speed", marker)
+        # The entry in the legend has a filled marker, even if all runs are flagged.
+        axes.plot([], [], marker, label=f"{ratio:g}", **look)
     axes.set(xlabel=r"pre-stress $\tau_0$", xlim=(0.0, 1.0), ylabel=r"$v\,\sqrt{1-\tau_0^2}$")
 
 
@@ -221,18 +223,16 @@ def _mark_speed(axes: Axes, speed: float, label: str, dashes: str, edge: str) ->
     axes.text(0.99, speed, label, path_effects=TEXT_OUTLINE, **look)
 
 
-def _mark_runs(
-    axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str, label: str | None = None
-) -> None:
+def _mark_runs(axes: Axes, rows: pd.DataFrame, x: str, y: str, marker: str) -> None:
     """Mark the runs among some rows in the colour of their damping ratio.
 
-    Markers are open if the run does not meet the conditions of the theory (column sound).
+    Markers are open if a run is flagged or does not meet the conditions of the theory (see the
+    column sound in `table`).
 
     x, y : columns on the axes
-    label : entry in the legend, for runs that meet the conditions
     """
     runs = rows[rows["role"] == "simulation"]
     groups = runs.groupby(["damping_ratio", runs["sound"].astype(bool)])
     for (ratio, is_sound), group in groups:
-        look: Look = {"label": label} if is_sound else OPEN_MARKER
+        look: Look = {} if is_sound else OPEN_MARKER
         axes.plot(group[x], group[y], marker, color=colour("damping_ratio", ratio), **look)

@@ -180,6 +180,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
         _draw_quantity(speed_axes, rows, "speed", unit=1.0, look=look)
         _draw_quantity(width_axes, rows, "pulse_width", unit=width_unit, look=look)
         _draw_quantity(slip_axes, rows, "pulse_slip", unit=slip_unit, look=look)
+    # Grey lines mark the speed of the longitudinal wave, and the width that is the unit.
     for axes in (speed_axes, width_axes):
         axes.axhline(1.0, color=GREY, linewidth=0.6)
     for axes in panels:
@@ -188,8 +189,7 @@ def _draw_pulses(panels: list[Axes], pulses: pd.DataFrame) -> None:
     speed_axes.set_ylabel(r"front speed $v$")
     width_axes.set_ylabel(r"width / $H\sqrt{2/\gamma-1}$")
     slip_axes.set_ylabel(r"slip / $(2\tau_0/\gamma)$")
-    handles, _ = speed_axes.get_legend_handles_labels()
-    speed_axes.legend(handles=handles, loc="lower left", fontsize=SMALL_TEXT)
+    speed_axes.legend(loc="lower left", fontsize=SMALL_TEXT)
     lines = [
         entry("formulas of the paper", color=BLACK, linestyle="--", linewidth=0.8),
         entry("1D, same friction", color=BLACK, linestyle=":"),
@@ -214,6 +214,7 @@ def _draw_quantity(
     line = look | {"linewidth": 0.8, "capsize": 1.5, "label": label}
     axes.errorbar(energy, value, [value - least, largest - value], **line)
     axes.plot(energy, rows[f"damped_{quantity}"] / unit, ":", color=look["color"])
+    # The formula does not depend on the fracture energy.
     formula = (rows[f"paper_{quantity}"] / unit).iloc[0]
     axes.axhline(formula, linestyle="--", color=look["color"], linewidth=0.8)
 
@@ -251,14 +252,14 @@ def _draw_coupled(axes: Axes, coupled: pd.DataFrame) -> None:
     There is one colour for each friction coefficient (column coupling). The column side is 1 for
     pulses on the right, and -1 for those on the left, which have open markers.
     """
+    handles = []
     groups = coupled.groupby("coupling")
     for colour, (coupling, rows) in zip(COUPLING_COLOURS, groups, strict=False):
         right, left = rows[rows["side"] > 0.0], rows[rows["side"] < 0.0]
         axes.plot(right["sample_position"], right["pulse_width"], "o-", color=colour)
         distance = left["sample_position"].abs()
         axes.plot(distance, left["pulse_width"], "o:", color=colour, **OPEN_MARKER)
-        axes.plot([], [], color=colour, label=rf"$\mu = {coupling:g}$")
-    handles, _ = axes.get_legend_handles_labels()
+        handles.append(entry(rf"$\mu = {coupling:g}$", color=colour))
     handles += [
         entry("right", color=GREY, marker="o"),
         entry("left", color=GREY, marker="o", **OPEN_MARKER),

@@ -105,7 +105,7 @@ def draw_claim(axes: Axes, claim: pd.DataFrame, position: int) -> None:
     position : vertical position of the row
     """
     for (choice, solution), rows in claim.groupby(["choice", "solution"]):
-        # A choice without a look of its own is drawn like no choice.
+        # A choice without a look of its own is grey, as is a verdict that depends on no choice.
         choice_look = CHOICE_LOOKS.get(str(choice), CHOICE_LOOKS[""])
         look: Look = {"color": choice_look["color"], "linestyle": "none"}
         look |= SOLUTION_MARKERS[str(solution)]

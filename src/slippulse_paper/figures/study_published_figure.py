@@ -145,7 +145,8 @@ def _draw_chi2(
     curves, best_fits : interpolated fits, and pulls of the best fit, by release rule
     notebook : the fit with the settings of the authors' public notebook, with one row per reading
     """
-    # Three parameters are fitted: tau_0, gamma and the damping ratio.
+    # Three parameters are fitted: tau_0, gamma and the damping ratio. The readings are the same for
+    # both release rules.
     dof = best_fits["total"]["reading"].nunique() - 3
     confidence = CONFIDENCE_LEVELS[1]
     # A fit is accepted if its chi-square is below this quantile of the chi-square distribution.
@@ -162,17 +163,24 @@ def _draw_chi2(
         label = rf"{rule_name}: $\chi^2 = {best_fit['chi2']:.1f}$"
         axes.plot(best_fit["damping_ratio"], best_fit["chi2"], marker, color=colour, label=label)
     top = 1.9 * largest_accepted
-    # The notebook fits much worse. Its chi-square is far above the top of the axes, where a marker
-    # points to it.
-    notebook_chi2 = (notebook["independent_pull"] ** 2).sum()
-    label = rf"notebook, total force: $\chi^2 = {notebook_chi2:.0f}$"
-    colour_of_total, _, _ = RULE_LOOKS["total"]
-    ratio = notebook["damping_ratio"].iloc[0]
-    axes.plot(ratio, top, "^", color=colour_of_total, label=label, clip_on=False)
+    _point_to_notebook(axes, notebook, top)
     label = f"5 % at {dof} degrees of freedom"
     axes.axhline(largest_accepted, color=BLACK, linewidth=0.7, linestyle=":", label=label)
     axes.set(ylim=(0.0, top), ylabel=r"smallest $\chi^2$")
     axes.legend(loc="upper left", borderaxespad=0.2)
+
+
+def _point_to_notebook(axes: Axes, notebook: pd.DataFrame, top: float) -> None:
+    """Mark the damping ratio of the authors' notebook, which uses the rule of the total force.
+
+    Its chi-square is far above the top of the axes, so that a marker at the top points upwards.
+
+    notebook : the fit with the settings of the notebook, with one row per reading
+    """
+    chi2 = (notebook["independent_pull"] ** 2).sum()
+    label = rf"notebook, total force: $\chi^2 = {chi2:.0f}$"
+    colour, _, _ = RULE_LOOKS["total"]
+    axes.plot(notebook["damping_ratio"].iloc[0], top, "^", color=colour, label=label, clip_on=False)
 
 
 def _draw_region(

@@ -36,7 +36,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         paper's formula (paper)
     refined : measured values on lattices of several spacings (value), and their limit (theory)
     """
-    runs, study = tables["pulse_damping"], tables["damped_pulse"]
+    study = tables["damped_pulse"]
+    runs = like_first_run(tables["pulse_damping"], ["dx", "gamma", "release"])
     curves = study[study["role"] == "curve"].rename(columns={"value": "over_paper"})
     parts = [curves.assign(role="theory")]
     for quantity in QUANTITY_LABELS:
@@ -48,7 +49,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
             quantity=quantity,
         )
         parts.append(rows)
-    refined = tables["continuum_fixed_ratio"]
+    scene_columns = ["left", "right", "gamma", "damping_ratio", "release"]
+    refined = like_first_run(tables["continuum_fixed_ratio"], scene_columns)
     limits = study[study["role"] == "limit"].set_index("quantity")["value"]
     for quantity, column in REFINED_COLUMNS.items():
         rows = refined[["left", "gamma", "damping_ratio", "dx"]].assign(
@@ -56,6 +58,14 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         )
         parts.append(rows)
     return pd.concat(parts, ignore_index=True)
+
+
+def like_first_run(runs: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+    """Return the runs that have the same values in these columns as the first run.
+
+    The exact values are for the first run. An overlay may add runs with other parameters.
+    """
+    return runs[(runs[columns] == runs[columns].iloc[0]).all(axis=1)]
 
 
 def draw(table: pd.DataFrame) -> Figure:

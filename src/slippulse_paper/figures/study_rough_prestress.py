@@ -78,6 +78,7 @@ def draw(table: pd.DataFrame) -> Figure:
     held_stress = table[table["boundary"] == "stress"]
     for ensemble in ensembles(held_stress, held_stress[held_stress["part"] == "ensemble"]):
         dead_fraction = ensemble.row["deaths"] / ensemble.row["pulses"]
+        # If few pulses die, the survival stays close to 1, and is not drawn.
         if dead_fraction > MIN_DEAD_FRACTION:
             draw_survival(walk_axes, ensemble)
             # The survival that theory predicts is a dashed line.
@@ -146,8 +147,9 @@ def finish_rates(axes: Axes, with_deaths: pd.DataFrame) -> None:
     On the line, death rate and predicted rate are equal. Within the band around it, they differ by
     less than a factor of two.
 
-    with_deaths : one row for each ensemble in which a pulse died. The first ones, as many as there
-        are COLOURS, have been drawn already (see `draw_rate`)
+    with_deaths : one row for each ensemble in which a pulse died, with its death rate (column rate)
+        and predicted rate (barrier_rate). The first rows, one for each of COLOURS, have been drawn
+        already (see `draw_rate`)
     """
     # Ensembles without a colour are small grey points.
     uncoloured = with_deaths.iloc[len(COLOURS) :]

@@ -177,14 +177,7 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = colours[float(np.sign(level))]
         time, velocity = line["time"], line["largest_velocity"]
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        label_position = (time.iloc[-1], velocity.iloc[-1])
-        if velocity.iloc[-1] <= MIN_DRAWN_VELOCITY:
-            # The line leaves the panel at its bottom. It is straight on the logarithmic axis, so
-            # logarithms are interpolated. They fall with time, but must ascend for interpolation.
-            ascending_logs = np.log(velocity.to_numpy()[::-1])
-            times = time.to_numpy()[::-1]
-            exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), ascending_logs, times)
-            label_position = (exit_time, 1.15 * MIN_DRAWN_VELOCITY)
+        label_position = _drawn_end(time.to_numpy(), velocity.to_numpy())
         axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
@@ -192,3 +185,13 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     axes.set_ylim(MIN_DRAWN_VELOCITY, 2.5 * rows["largest_velocity"].max())
     axes.set_title(rf"$\Gamma = 0$, $\tau = {rows['before'].iloc[0]:g}$ before")
     axes.text(0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top")
+
+
+def _drawn_end(time: np.ndarray, velocity: np.ndarray) -> tuple[float, float]:
+    """Return the end of a line of the velocity, or just above where it leaves the panel below."""
+    if velocity[-1] > MIN_DRAWN_VELOCITY:
+        return time[-1], velocity[-1]
+    # The line is straight on the logarithmic axis, so logarithms are interpolated. They fall with
+    # time, but must ascend for interpolation.
+    exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), np.log(velocity[::-1]), time[::-1])
+    return float(exit_time), 1.15 * MIN_DRAWN_VELOCITY

@@ -1,5 +1,6 @@
 """The main numbers of a user-defined sweep as functions of the parameters that vary in it."""
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -60,9 +61,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     # The figure needs only the table of its sweep.
     (runs,) = tables.values()
     has_equal_levels = (runs["left"] == runs["right"]).all()
-    # The column tau_0 has the level of both sides. If they differ in some run, it has the same
-    # number in all runs, so that `varying_columns` leaves it out.
-    runs = runs.assign(tau_0=runs["left"] if has_equal_levels else 0.0)
+    # The column tau_0 has the level of both sides, or NaN if they differ in some run.
+    runs = runs.assign(tau_0=runs["left"] if has_equal_levels else np.nan)
     # If nothing varies, as in a single run, the axis shows the profile or the level on the left.
     axis_of_equal_runs = "profile" if "profile" in runs else "left"
     axis, *other_columns = varying_columns(runs) or [axis_of_equal_runs]

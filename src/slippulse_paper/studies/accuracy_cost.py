@@ -144,6 +144,7 @@ def settings_of_schemes() -> list[Setting]:
     """Return all settings of the textbook scheme and the localised scheme, and the exact one."""
     compared = []
     for dx, step in product(TEXTBOOK_SPACINGS, TEXTBOOK_STEPS):
+        # Runs with smaller time steps would take too long.
         if dx * step >= SMALLEST_TEXTBOOK_TIME_STEP:
             compared.append(Setting(scheme="fixed_step", order=1, step=step, dx=dx))
     for dx, order, step in product(SPACINGS, ORDERS, STEPS):

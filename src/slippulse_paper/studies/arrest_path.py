@@ -20,15 +20,20 @@ REMAINING_FRACTIONS = np.append(np.geomspace(1.0, 1e-4, 200)[1:], 1e-6)
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each damping ratio and remaining fraction of the path.
 
+    The pre-stress and the release rule are those of the first run whose left front stops. The
+    figure draws only the runs that share them.
+
     time : time at which this fraction remains, in units of the length of the path, |x_minus|
     to_go : the remaining fraction
     """
-    # The sweep has several spacings, on which the exact path does not depend, so one run of each
-    # damping ratio is enough.
-    run_by_damping_ratio = {run.damping_ratio: run for run in runs(settings["sweeps"]["arrest"])}
+    swept_runs = [*runs(settings["sweeps"]["arrest"])]
+    first = next(
+        run for run in swept_runs if run.prestress.left < 0.0 and run.prestress.right == 0.0
+    )
     parts = []
-    for damping_ratio, run in run_by_damping_ratio.items():
-        crack = ArrestingCrack(run.prestress, damping_ratio, run.release)
+    # The sweep has several spacings, on which the exact path does not depend.
+    for damping_ratio in sorted({run.damping_ratio for run in swept_runs}):
+        crack = ArrestingCrack(first.prestress, damping_ratio, first.release)
         path_length = -crack.balance_position
         times = [crack.transition(1.0 - remaining).time for remaining in REMAINING_FRACTIONS]
         columns = {

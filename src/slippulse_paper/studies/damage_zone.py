@@ -27,19 +27,18 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     given = figure["stiffness_ratios"]
     stiffness_ratios = np.geomspace(given["from"], given["to"], given["count"])
     parts = []
-    for thickness in figure["thickness_ratios"]:
-        parts.append(stress_drop_curve(float(thickness), stiffness_ratios))
+    for rock_thickness in figure["thickness_ratios"]:
+        parts.append(stress_drop_curve(float(rock_thickness), stiffness_ratios))
     parts.append(displacements("before", slip=0.0))
     parts.append(displacements("after", slip=SLIP))
     return pd.concat(parts, ignore_index=True)
 
 
-def stress_drop_curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
-    """Return the stress drop as a function of the stiffness ratio.
+def stress_drop_curve(rock_thickness: float, stiffness_ratios: np.ndarray) -> pd.DataFrame:
+    """Return the stress drop of the fault as a function of the stiffness ratio.
 
     The slip is 1, and so are the thickness and the shear modulus of the damage zone.
 
-    thickness : thickness of the rock
     stiffness_ratios : shear moduli of the damage zone divided by that of the rock
     """
     drop = damage_zone_stress_drop(
@@ -47,9 +46,9 @@ def stress_drop_curve(thickness: float, stiffness_ratios: np.ndarray) -> pd.Data
         shear_modulus=1.0,
         rock_shear_modulus=1.0 / stiffness_ratios,
         thickness=1.0,
-        rock_thickness=thickness,
+        rock_thickness=rock_thickness,
     )
-    columns = {"thickness_ratio": thickness, "stiffness_ratio": stiffness_ratios}
+    columns = {"thickness_ratio": rock_thickness, "stiffness_ratio": stiffness_ratios}
     return pd.DataFrame({"role": "curve"} | columns | {"stress_drop": drop})
 
 

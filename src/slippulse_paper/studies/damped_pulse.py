@@ -26,25 +26,28 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     limit : a quantity of the pulse in the limit dx -> 0, or its front speed
     """
     swept_runs = [*runs(settings["sweeps"]["pulse_damping"])]
-    # All runs of this sweep are the same scene at several spacings, so they have the same limit.
-    refined_runs = [*runs(settings["sweeps"]["continuum_fixed_ratio"])]
-    return pd.DataFrame(curve_rows(swept_runs) + limit_rows(refined_runs[0]))
+    # The runs of this sweep are one scene at several spacings, so they have the same limit. If an
+    # overlay adds other scenes, the figure draws only that of the first run.
+    first_refined_run = next(runs(settings["sweeps"]["continuum_fixed_ratio"]))
+    return pd.DataFrame(curve_rows(swept_runs) + limit_rows(first_refined_run))
 
 
 def curve_rows(swept_runs: list[Run]) -> list[dict[str, Any]]:
     """Return exact pulses divided by the paper's formulas, for each level and damping ratio.
 
-    The spacing, gamma and release rule are those of the swept runs, which share them.
+    The spacing, gamma and release rule are those of the first run. The figure draws only the runs
+    that share them.
     """
-    dx, gamma, release = swept_runs[0].dx, swept_runs[0].gamma, swept_runs[0].release
+    first = swept_runs[0]
     largest_ratio = max(run.damping_ratio for run in swept_runs)
     damping_ratios = largest_ratio * RELATIVE_DAMPING_RATIOS
     rows = []
     for level in sorted({run.prestress.left for run in swept_runs}):
-        paper = paper_pulse(level, gamma)
-        speeds = front_speed(level, damping_ratios, release)
+        paper = paper_pulse(level, first.gamma)
+        speeds = front_speed(level, damping_ratios, first.release)
         for damping_ratio, speed in zip(damping_ratios, speeds, strict=True):
-            pulse = pulse_at_speed(level, gamma, damping_ratio * dx, speed)
+            beta = damping_ratio * first.dx
+            pulse = pulse_at_speed(level, first.gamma, beta, speed)
             for quantity in QUANTITIES:
                 ratio_to_paper = getattr(pulse, quantity) / getattr(paper, quantity)
                 rows.append(row_of("curve", level, damping_ratio, quantity, ratio_to_paper))

@@ -62,7 +62,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     # and for the level before the step.
     scene_with_step = scenes["pulses_across_a_step"][0]
     level, gamma = scene_with_step.prestress.left, scene_with_step.gamma
-    levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
+    # The levels of figure 5, of which the lowest and the highest are quoted.
+    scaling_levels = sorted({scene.prestress.left for scene in scenes["scaling_displacement"]})
 
     @cache
     def published_rupture() -> Rupture:
@@ -74,7 +75,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         "front_speed_elastic": lambda: front_speed(published_level, damping_ratio, "elastic"),
         **pulse_functions(level, gamma, damping_ratio, release),
         **one_way_functions(level, gamma, damping_ratio, release),
-        **transition_functions(level, levels),
+        **transition_functions(level, scaling_levels),
         # The strain term of the equation of motion at the nucleation point, divided by the
         # pre-stress there, which is 1.
         "strain_term": lambda: abs(curvature_at_nucleation(published_rupture())),

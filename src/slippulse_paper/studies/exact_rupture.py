@@ -169,7 +169,7 @@ def _sliding_velocities(
     """Return slip velocities on the lattice, and the exact ones at the same positions and times.
 
     These are all samples of the run between the positions ``first`` and ``last`` that slide, except
-    those within EDGE_LAYER_TIME of a release or a stick.
+    those within EDGE_LAYER_TIME of a release or a stick, which a lattice does not resolve.
     """
     positions, times = run["sample_position"].values, run["sample_time"].values
     columns = np.flatnonzero((positions >= first) & (positions <= last))

@@ -84,10 +84,12 @@ class Case:
         """
         symmetric = Prestress(self.level, self.level, self.width)
         if self.family == "two nucleations":
-            fronts = fast_fronts(symmetric, self.damping_ratio, "total", NUCLEATION_DISTANCE)
+            # The fronts of equal nucleations meet halfway between them.
+            fronts = fast_fronts(symmetric, self.damping_ratio, "total", reach=NUCLEATION_DISTANCE)
             return float(fronts.arrival(0.5 * NUCLEATION_DISTANCE))
         if self.quantity != "T_trans":
             return 1.0
+        # Without leaf springs the transition is the arrest of the left front.
         if self.gamma == 0.0:
             crack = ArrestingCrack(Prestress(self.level, 0.0, self.width), self.damping_ratio)
             return crack.transition(COVERED_FRACTION).time
@@ -423,6 +425,7 @@ def two_nucleations() -> Iterator[Case]:
     """
     # Position, height and width of a bump that raises the level to 1, as the Gaussian at x = 0.
     second_peak = (NUCLEATION_DISTANCE, 1.0 - LEVEL, 1.0)
+    # Durations are in units of the meeting time.
     for quantity, relative_duration in (("meeting time", 1.5), ("asymmetry", 3.0)):
         yield Case(
             family="two nucleations",

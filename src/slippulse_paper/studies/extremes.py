@@ -150,8 +150,9 @@ def measured_outcome(case: Case, front_window: float) -> Outcome:
     front_window : last fraction of the path over which the front speed is measured
     """
     if case.quantity == "velocity error":
-        # The solver does not offer single precision, so this is the error of a simple program.
-        return Outcome(single_precision_error(case), NOT_OFFERED)
+        # The solver does not offer single precision, and the message says so. The value is the
+        # error of a simple program.
+        return Outcome(single_precision_error(case), message=NOT_OFFERED)
     scene = case.scene()
     if case.quantity == "slip":
         # Only this function can change the sign of the damping. Its solution has no flags.
@@ -188,6 +189,7 @@ def additional_quantity(run: xr.Dataset, quantity: str) -> float:
     x, slip = run["x"].values, run["slip"].values
     if quantity == "meeting time":
         distance_from_middle = np.abs(x - 0.5 * NUCLEATION_DISTANCE)
+        # The middle may lie between two blocks. The last release there is when the fronts meet.
         middle_blocks = distance_from_middle < 1.5 * run.attrs["dx"]
         return float(np.nanmax(run["release_time"].values[middle_blocks]))
     if quantity == "asymmetry":

@@ -165,7 +165,7 @@ def _simulated_row(
     step_over_dx : largest time step divided by dx
     still_fraction : fraction of the largest velocity below which the centre counts as at rest
     """
-    # The step must also resolve the friction law.
+    # The step must also resolve the friction law, with a margin.
     step_over_dx = min(step_over_dx, 0.9 * law.traits.longest_step / dx)
     # Slip weakening has a limit dx -> 0 at fixed beta, all other laws have it at fixed beta/dx.
     beta = BETA if isinstance(law, SlipWeakening) else DAMPING_RATIO * dx

@@ -111,7 +111,8 @@ def lines_by_spacing(runs: pd.DataFrame) -> pd.DataFrame:
     runs : parameters of simulated runs, one row for each run
     """
     rows = []
-    # Only runs with one level and a small beta have a line.
+    # There are lines for the level 0.5 only. At a large beta there is none, because the pulse would
+    # be as narrow as the damped layer at its front.
     for line_values, spacings in runs.query(HAS_LINE_BY_SPACING).groupby(LINE_COLUMNS)["dx"]:
         line = dict(zip(LINE_COLUMNS, line_values, strict=True))
         level, gamma, release = line["left"], line["gamma"], line["release"]

@@ -35,6 +35,6 @@ def time_divided_by_formula(level: float, gamma: float | None = None) -> float:
     the ratio does not depend on gamma.
     """
     if gamma is None:
-        return uniform_transition_time(level, 1.0) / np.pi
+        return uniform_transition_time(level, gamma=1.0) / np.pi
     exact = exact_transition_displacement(Prestress(level, level), gamma)
     return exact.time * np.sqrt(gamma) / np.pi

@@ -166,7 +166,8 @@ def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     if coarsest in far_grids:
         far_rows += rows_at_far_stations("far", far_scene, simulate_layer(far_scene))
     for cells in finer_grids(near_scene):
-        # All rows of one run have its split_position. The last row is of the next coarser grid.
+        # Each row has the split_position of its run, so the last row shows if the pulse split on
+        # the grid before.
         split_on_coarser_grid = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
         is_followed_far = split_on_coarser_grid or cells in far_grids
         scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
@@ -175,6 +176,7 @@ def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
         if is_followed_far:
             far_rows += rows_at_far_stations("far", scene, run)
     if any(math.isfinite(row["split_position"]) for row in far_rows):
+        # The paper's damping may prevent the split. Two grids show whether the result converges.
         far_rows += damped_rows(far_scene, far_grids[:2])
     return near_rows, far_rows
 
@@ -207,13 +209,11 @@ def is_long(scene: LayerScene) -> bool:
 def finer_grids(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the grids for a pulse that are finer than the coarsest grid.
 
-    A pulse is brittle if its strength falls over a short length, which needs a fine grid. There are
-    three finer grids for very brittle pulses and for brittle pulses at GAMMA, and two for others.
-    At small gamma, where pulses are wide and runs are long, there is one, or two if the pulse is
-    brittle and its run is not long.
+    A pulse is brittle if its strength falls over a short length, which needs a fine grid.
 
     scene : a scene of the pulse with the duration and the trail that it needs
     """
+    # At small gamma pulses are wide and runs are long, so there are fewer grids.
     if scene.gamma < SMALL_GAMMA:
         needs_two = is_brittle(scene) and not is_long(scene)
         return CELLS[1:3] if needs_two else CELLS[1:2]
@@ -224,10 +224,8 @@ def finer_grids(scene: LayerScene) -> Sequence[int]:
 def grids_far_away(scene: LayerScene) -> Sequence[int]:
     """Return the numbers of cells of the grids on which a pulse is followed to FAR_STATIONS.
 
-    A pulse is brittle if its strength falls over a short length, which needs a fine grid. Very
-    brittle pulses have the three finest grids. Pulses at GAMMA, and brittle pulses unless gamma is
-    small, have the two middle grids, and all others the two coarsest. If the run is long, there is
-    none.
+    There is none if the run is long. A pulse is brittle if its strength falls over a short length,
+    which needs a fine grid. At small gamma runs are longer, so the grids are coarser.
     """
     if is_long(scene):
         return ()
@@ -264,14 +262,15 @@ def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int 
         station; NaN if none does
     sliding_again : length of the fault beyond the first station that slides again at the end
     """
-    distances = [station * stretch(scene.gamma) for station in FAR_STATIONS]
-    rows = measured_rows(part, scene, run, [side * distance for distance in distances], side)
+    station_distances = [station * stretch(scene.gamma) for station in FAR_STATIONS]
+    positions = [side * distance for distance in station_distances]
+    rows = measured_rows(part, scene, run, positions, side)
     sliding_time_at_first_station = rows[0]["pulse_width"] / rows[0]["speed"]
     sliding_time = run.stick_time - run.release_time
     sticks_early = sliding_time < SPLIT_FRACTION * sliding_time_at_first_station
     distance = side * run.x
-    is_beyond_first_station = distance > distances[0]
-    is_split = is_beyond_first_station & (distance < distances[-1]) & sticks_early
+    is_beyond_first_station = distance > station_distances[0]
+    is_split = is_beyond_first_station & (distance < station_distances[-1]) & sticks_early
     # The first row of velocities is that of the fault, which is the bottom of the layer.
     has_stuck, is_sliding = np.isfinite(run.stick_time), run.velocity[0] > 0.0
     slides_again = is_beyond_first_station & has_stuck & is_sliding
@@ -302,7 +301,7 @@ def patch_rows(gamma: float) -> Rows:
 
 
 def free_top_rows() -> Rows:
-    """Return the rows of pulses in a layer whose top is free to rise."""
+    """Return the rows of pulses in a layer whose top may rise, on the three coarsest grids."""
     rows: Rows = []
     for tau0, energy in FREE_TOP_PULSES:
         scene = uniform_scene("displacement", GAMMA, tau0, weakening_of(energy, tau0, GAMMA))

@@ -157,8 +157,9 @@ def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
 
     cells : number of cells per unit of length
 
-    Raises ValueError if a position has slipped but has not stuck in time. In the thick layer it
-    must stick before waves may return from the top, and in the thin layer before the end.
+    Raises ValueError if a position has slipped but has not stuck in time, or if the pulse may still
+    arrive there. In the thick layer it must stick before waves may return from the top, and in the
+    thin layer before the end.
     """
     thickness = layer.thickness
     # All results of the run are in units of the thickness of its own layer, and converted below.
@@ -171,11 +172,14 @@ def slips(layer: Layer, pulse: Pulse, cells: int) -> np.ndarray:
     # A wave from the nucleation returns from the top of the thick layer at these times.
     latest_times = np.hypot(positions, 2.0 * thickness) if layer is THICK else layer.duration
     has_stuck_in_time = stick_times < latest_times
-    still_sliding = positions[(slip > 0.0) & ~has_stuck_in_time]
-    if still_sliding.size:
+    # The pulse has died if the outermost node that slipped has stuck.
+    outermost_node = np.flatnonzero(run.slip)[-1]
+    has_died = np.isfinite(run.stick_time[outermost_node])
+    undecided = positions[~has_stuck_in_time & ((slip > 0.0) | ~has_died)]
+    if undecided.size:
         raise ValueError(
-            f"{pulse} in a layer of thickness {thickness:g}: still slides at x ="
-            f" {still_sliding[0]:g}"
+            f"{pulse} in a layer of thickness {thickness:g}: the run ends before the slip at x ="
+            f" {undecided[0]:g} is known"
         )
     return slip
 

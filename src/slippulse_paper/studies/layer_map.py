@@ -78,10 +78,13 @@ def slips_on_grids(gamma: float, energy: float, grids: Sequence[int]) -> list[di
     numbers: list[dict[str, float]] = [{} for _ in grids]
     for name, relative_level in RELATIVE_LEVELS_BEFORE.items():
         before = relative_level * LEVEL
-        rows = rows_across_a_step(gamma, LEVEL, weakening, before, grids, STATION_POSITIONS)
+        rows = rows_across_a_step(
+            gamma, LEVEL, weakening, before=before, grids=grids, stations=STATION_POSITIONS
+        )
         for cells, numbers_on_grid in zip(grids, numbers, strict=True):
             # There is one row for each of STATION_POSITIONS.
             before_step, halfway, last = (row for row in rows if row["cells"] == cells)
+            # Speed and width are those of the pulse that forms in the final pre-stress.
             if name == "uniform":
                 numbers_on_grid |= {"speed": last["speed"], "pulse_width": last["pulse_width"]}
             numbers_on_grid |= {

@@ -100,10 +100,11 @@ def displacement_transitions(
         # Beyond this position the pre-stress is uniform, and the front has a constant speed.
         uniform_from = GAUSSIAN_END_IN_WIDTHS * width
         speed = float(front_speed(level, damping_ratio, release))
-        # Waves run at speed 1, so up to the time t only the fronts at |x| < t influence x = 0. The
-        # fronts are also needed beyond ``uniform_from``.
+        # Waves run at speed 1, so up to the time t only the fronts at |x| < t influence x = 0.
+        # Where the pre-stress is uniform, the curve of the fronts is continued as a straight line,
+        # so it must reach beyond ``uniform_from``.
         reach = max(float(latest_sticks.max()), 2.0 * uniform_from)
-        # The curve has panels so short that they resolve the waves at the largest gamma.
+        # The front curve is divided so finely that it resolves the waves at the largest gamma.
         prestress = Prestress(level, level, width)
         fronts = fast_fronts(prestress, damping_ratio, release, reach=reach, gamma=gammas.max())
         times = stick_times_of_centre(fronts, gammas, latest_sticks)
@@ -163,7 +164,7 @@ def stress_arrests(
     """
     parts = []
     for left, group in runs.groupby("left"):
-        crack = ArrestingCrack(Prestress(left, 0.0), damping_ratio, release)
+        crack = ArrestingCrack(Prestress(left, 0.0, width=1.0), damping_ratio, release)
         distance = -crack.balance_position
         arrests = []
         for fraction in fractions:

@@ -88,6 +88,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     notebook = panel.fit(NOTEBOOK_RATIO, NOTEBOOK_RELEASE, NOTEBOOK_SPACING, guess)
     parts.append(notebook.assign(part="notebook"))
     readings = readings_of(published, "space_time_stress")
+    # The table does not have these columns, which only fits use.
     readings = readings.drop(columns=["arrow", "shared_error"])
     largest_velocity = readings[readings["quantity"] == "largest_velocity"]
     for release, damping_ratio in product(RELEASES, RIGHT_DAMPING_RATIOS):

@@ -49,6 +49,7 @@ def displacement_profile(run: Run) -> pd.DataFrame:
         np.nextafter(trailing_edge, -np.inf),
         trailing_edge,
         front,
+        # The number next to 0 would be lost to rounding when the peak position is subtracted.
         front + 1e-12 * pulse.width,
     ]
     in_widths = np.linspace(-(1.0 + MARGIN_BEHIND), MARGIN_AHEAD, POINT_COUNT)

@@ -164,7 +164,9 @@ def _lattice_row(level: float, fraction: float, still_fraction: float) -> dict[s
         rest
     """
     front_speed_at_level, critical_alpha = _front_and_critical_alpha(level)
-    alpha, dx = fraction * critical_alpha, SPACING_OVER_LEVEL * level
+    alpha = fraction * critical_alpha
+    # The pulse width is proportional to the level.
+    dx = SPACING_OVER_LEVEL * level
     # The time in which a pulse becomes steady is proportional to 1/(v - 1).
     duration = MIN_DURATION + MEMORY_TIMES / (front_speed_at_level - 1.0)
     scene = Scene(

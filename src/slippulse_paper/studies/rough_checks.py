@@ -102,46 +102,52 @@ def simulated_run(scene: Scene) -> Recorded:
 
 def grid_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Return the death rate on lattices of several spacings, over some seeds of all ensembles."""
-    profiles: list[Profile] = []
-    for ensemble in ensembles_of(sweep):
-        profiles += ensemble[:GRID_SEEDS]
-    # The rough pre-stress ends at this distance, which is the same in all ensembles as shipped.
-    end_of_track = profiles[0]["rough"]["stop"]
     rows = []
     for dx in GRID_SPACINGS:
-        fates = []
-        for scene in scenes_of(sweep, profiles, dx=[dx]):
-            run = simulated_run(scene)
-            fates += [fate_of_pulse(run, side, stop=end_of_track) for side in (1, -1)]
+        fates: list[Fate] = []
+        for ensemble in ensembles_of(sweep):
+            scenes = scenes_of(sweep, ensemble[:GRID_SEEDS], dx=[dx])
+            fates += fates_on_both_sides(scenes, end_of_track=ensemble[0]["rough"]["stop"])
         # Deaths are counted from START on, which is beyond the region that the nucleation reaches.
         rows.append({"part": "grid", "dx": dx} | death_rate(fates, START))
     return pd.DataFrame(rows)
+
+
+def fates_on_both_sides(scenes: Sequence[Scene], end_of_track: float) -> list[Fate]:
+    """Simulate scenes, and return the fates of their left and right pulses.
+
+    end_of_track : distance at which the rough pre-stress ends on both sides
+    """
+    fates = []
+    for scene in scenes:
+        run = simulated_run(scene)
+        fates += [fate_of_pulse(run, side, stop=end_of_track) for side in (1, -1)]
+    return fates
 
 
 def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     """Return the death rates in both halves of longer tracks, over some seeds of all ensembles.
 
     A track is the region of rough pre-stress. Tracks and duration are LENGTH_FACTOR times as long
-    as in the study. The column stop has the end of each half.
+    as in the study. The column stop has the end of each half. Tracks of different lengths have
+    rows of their own.
     """
-    profiles: list[Profile] = []
-    for ensemble in ensembles_of(sweep):
-        profiles += [with_longer_track(profile) for profile in ensemble[:LENGTH_SEEDS]]
-    end = profiles[0]["rough"]["stop"]
-    middle = end / LENGTH_FACTOR
     duration = {"time": LENGTH_FACTOR * sweep["duration"]["time"]}
-    fates = []
-    for scene in scenes_of(sweep, profiles, duration=duration, dx=[LENGTH_SPACING]):
-        run = simulated_run(scene)
-        fates += [fate_of_pulse(run, side, stop=end) for side in (1, -1)]
-    # A pulse that leaves the first half alive counts as alive at the end of this half.
-    fates_in_first_half = [
-        Fate(min(fate.distance, middle), fate.died and fate.distance < middle) for fate in fates
-    ]
-    rows = [
-        {"stop": middle} | death_rate(fates_in_first_half, start=START),
-        {"stop": end} | death_rate(fates, start=middle),
-    ]
+    fates_by_end: dict[float, list[Fate]] = {}
+    for ensemble in ensembles_of(sweep):
+        profiles = [with_longer_track(profile) for profile in ensemble[:LENGTH_SEEDS]]
+        scenes = scenes_of(sweep, profiles, duration=duration, dx=[LENGTH_SPACING])
+        end = profiles[0]["rough"]["stop"]
+        fates_by_end.setdefault(end, []).extend(fates_on_both_sides(scenes, end))
+    rows = []
+    for end, fates in fates_by_end.items():
+        middle = end / LENGTH_FACTOR
+        # A pulse that leaves the first half alive counts as alive at the end of this half.
+        fates_in_first_half = [
+            Fate(min(fate.distance, middle), fate.died and fate.distance < middle) for fate in fates
+        ]
+        rows.append({"stop": middle} | death_rate(fates_in_first_half, start=START))
+        rows.append({"stop": end} | death_rate(fates, start=middle))
     return pd.DataFrame(rows).assign(part="length", dx=LENGTH_SPACING)
 
 
@@ -192,12 +198,12 @@ def exact_rows(ensemble: Sequence[Profile], sweep: Mapping[str, Any]) -> pd.Data
             # The exact solution depends on the damping ratio and not on the spacing, so all
             # lattices are compared with the same one.
             ruptures = [exact_rupture(scene) for scene in scenes]
-        blocks_per_comparison = round(COMPARED_BLOCK_DISTANCE / dx)
+        stride = round(COMPARED_BLOCK_DISTANCE / dx)
         deviations = []
         for scene, rupture in zip(scenes, ruptures, strict=True):
             solution = solve_on_lattice(scene)
             stuck_blocks = np.flatnonzero(np.isfinite(solution.stick_time))
-            compared = stuck_blocks[::blocks_per_comparison]
+            compared = stuck_blocks[::stride]
             exact_slip = rupture.final_slip(solution.x[compared])
             deviations.append(np.abs(solution.slip[compared] / exact_slip - 1.0))
         # A deviation is NaN where the point still slides in the exact solution.
@@ -234,8 +240,11 @@ def slip_beyond_bump(sweep: Mapping[str, Any], profiles: Sequence[Profile]) -> n
     the same for profiles without the bump.
     """
     scenes = scenes_of(sweep, profiles)
-    level, gamma = profiles[0]["rough"]["level"], scenes[0].gamma
-    pulse = steady_pulse(level, gamma, damping_ratio=scenes[0].damping_ratio)
+    # All scenes have the same level, elasticity ratio, damping ratio and release rule.
+    scene, level = scenes[0], profiles[0]["rough"]["level"]
+    pulse = steady_pulse(
+        level, scene.gamma, damping_ratio=scene.damping_ratio, release=scene.release
+    )
     memory = pulse.width / (pulse.speed - 1.0)
     end_of_bump = BUMP_POSITION + BUMP_REACH_IN_WIDTHS * BUMP_WIDTH
     positions = end_of_bump + memory * RELATIVE_DISTANCES

@@ -67,11 +67,13 @@ class Ensemble(NamedTuple):
     """Runs whose pre-stress fields differ only in their seed.
 
     parameters : what all runs have in common, by the names in RUN_KEYS and ROUGH_KEYS
+    release : release rule of all runs
     runs : one simulated run for each seed
     profiles : the pre-stress profile of each run, as in the configuration
     """
 
     parameters: dict[str, Any]
+    release: str
     runs: list[Recorded]
     profiles: list[dict]
 
@@ -118,7 +120,8 @@ def ensembles_of(data: xr.Dataset, profiles: Iterable[dict]) -> Iterator[Ensembl
         rough_parameters = {name: profile["rough"][name] for name in ROUGH_KEYS}
         key = tuple(rough_parameters.values())
         if key not in ensembles:
-            ensembles[key] = Ensemble(run_parameters | rough_parameters, [], [])
+            parameters = run_parameters | rough_parameters
+            ensembles[key] = Ensemble(parameters, run.attrs["release"], runs=[], profiles=[])
         ensembles[key].runs.append(run)
         ensembles[key].profiles.append(profile)
     yield from ensembles.values()
@@ -155,7 +158,8 @@ def displacement_rows(ensemble: Ensemble) -> pd.DataFrame:
     for run in ensemble.runs:
         fates += [fate_of_pulse(run, side, stop) for side in (1, -1)]
     # Deaths are counted from START on, which is beyond the region that the nucleation reaches.
-    row = {"part": "ensemble"} | death_rate(fates, START) | barrier_rate(ensemble.parameters)
+    row = {"part": "ensemble"} | death_rate(fates, START)
+    row |= barrier_rate(ensemble.parameters, ensemble.release)
     if "slip" in ensemble.runs[0]:
         row |= steady_pulse_comparison(ensemble)
     curve = survival(fates).assign(part="survival")
@@ -168,8 +172,12 @@ def steady_pulse_comparison(ensemble: Ensemble) -> dict[str, float]:
     Slip and speed are divided by those of the steady pulse at the mean pre-stress.
     """
     parameters = ensemble.parameters
-    level, damping_ratio = parameters["level"], parameters["damping_ratio"]
-    pulse = steady_pulse(level, parameters["gamma"], damping_ratio=damping_ratio)
+    pulse = steady_pulse(
+        parameters["level"],
+        parameters["gamma"],
+        damping_ratio=parameters["damping_ratio"],
+        release=ensemble.release,
+    )
     # A pulse forgets what it met after this distance.
     memory = pulse.width / (pulse.speed - 1.0)
     numbers = {"pulse_width": pulse.width, "memory": memory}
@@ -210,7 +218,7 @@ def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]
     The argument ``pulse`` is the steady pulse at the mean pre-stress.
     """
     damping_ratio = ensemble.parameters["damping_ratio"]
-    slownesses_at_levels = 1.0 / front_speed(SPEED_LEVELS, damping_ratio)
+    slownesses_at_levels = 1.0 / front_speed(SPEED_LEVELS, damping_ratio, ensemble.release)
     slownesses, predicted_slownesses = [], []
     for run in ensemble.runs:
         # Blocks up to START are left out, because the nucleation changes the front speed there.
@@ -343,8 +351,9 @@ def long_distance_rows(ensemble: Ensemble, smooth_profile: dict) -> pd.DataFrame
     for seed in range(FIRST_LONG_SEED, FIRST_LONG_SEED + LONG_SEEDS):
         field_parameters["seed"] = seed
         prestress = rough(**field_parameters).tau * background_weight + smooth_prestress
-        death = balance_position(x, LONG_SPACING * np.cumsum(prestress))
-        fates.append(Fate(min(death, LONG_DISTANCE), died=bool(death < LONG_DISTANCE)))
+        death_position = balance_position(x, LONG_SPACING * np.cumsum(prestress))
+        has_died = bool(death_position < LONG_DISTANCE)
+        fates.append(Fate(min(death_position, LONG_DISTANCE), has_died))
     row = {"part": "long"} | death_rate(fates, START)
     row |= survival_exponent(fates, ASYMPTOTIC_DISTANCE)
     curve = survival(fates).iloc[::LONG_CURVE_STEP].assign(part="long_survival")

@@ -1,7 +1,8 @@
 """Theory of pulses on a rough pre-stress: death rate, random walk, and the balance at death.
 
 The parameters of an ensemble of rough pre-stress fields are passed as a mapping, with the mean of
-the field (level), its standard deviation, correlation_length, hurst exponent and grid spacing.
+the field (level), its standard deviation, correlation_length, hurst exponent and grid spacing. The
+death rate also needs the gamma and the damping_ratio of the runs.
 """
 
 import math
@@ -28,7 +29,8 @@ PERIOD_IN_CORRELATION_LENGTHS = 400
 def spectrum(parameters: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """Return the wave numbers of a rough field, and the variance that each of them contributes.
 
-    The field is periodic here, so that the wave numbers are discrete.
+    The field has a von Karman spectrum, which falls as (1 + k^2 l^2)^-(hurst + 1/2), where l is the
+    correlation length. It is periodic here, so that the wave numbers k are discrete.
     """
     correlation_length, spacing = parameters["correlation_length"], parameters["spacing"]
     point_count = round(PERIOD_IN_CORRELATION_LENGTHS * correlation_length / spacing)
@@ -38,7 +40,7 @@ def spectrum(parameters: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     return wave_numbers, parameters["deviation"] ** 2 * shape / np.sum(shape)
 
 
-def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
+def barrier_rate(parameters: Mapping[str, Any], release: str) -> dict[str, float]:
     """Return the predicted number of fatal barriers per length, with the most frequent barrier.
 
     A barrier is a stretch of negative pre-stress. It stops a steady pulse if it is longer than the
@@ -51,7 +53,9 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
     wave_numbers, variances = spectrum(parameters)
     most_frequent = {"barrier_rate": 0.0, "barrier": math.nan, "depth": math.nan}
     for barrier in level * RELATIVE_BARRIERS:
-        depth = critical_depth(level, -barrier, parameters["gamma"], parameters["damping_ratio"])
+        depth = critical_depth(
+            level, -barrier, parameters["gamma"], parameters["damping_ratio"], release
+        )
         # Averaging over a length multiplies each amplitude by sin(k depth/2)/(k depth/2).
         averaging_factors = np.sinc(wave_numbers * depth / (2.0 * np.pi))
         averaged = variances * averaging_factors**2
@@ -67,12 +71,14 @@ def barrier_rate(parameters: Mapping[str, Any]) -> dict[str, float]:
 
 
 @cache
-def critical_depth(level: float, barrier: float, gamma: float, damping_ratio: float) -> float:
+def critical_depth(
+    level: float, barrier: float, gamma: float, damping_ratio: float, release: str
+) -> float:
     """Return the exact depth to which a pulse enters a barrier.
 
     It is computed only once for all ensembles that have the same level.
     """
-    return barrier_depth(level, barrier, gamma, damping_ratio)
+    return barrier_depth(level, barrier, gamma, damping_ratio, release)
 
 
 def diffusivity(parameters: Mapping[str, Any]) -> float:

@@ -71,7 +71,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     schemes_and_orders += [("localised", order) for order in ORDERS]
     rows = []
     for (scheme, order), damping_ratio in product(schemes_and_orders, DAMPING_RATIOS):
-        derived = largest_step(scheme, order, damping_ratio, 0.0)
+        derived = largest_step(scheme, order, damping_ratio, gamma_dx2=0.0)
         row = {
             "scheme": scheme,
             "order": order,

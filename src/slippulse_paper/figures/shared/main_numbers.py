@@ -102,7 +102,8 @@ def scene_numbers(run: pd.Series, study: pd.DataFrame) -> pd.DataFrame:
     has_bumps = bool(json.loads(run["steps_and_bumps"])["bumps"])
     if has_bumps and run["boundary"] == "stress":
         left_out += ["transition_time", "transition_length"]
-    # If the displacement is held, the transition is at the first stick, so both times are equal.
+    # Only if the displacement is held, the first stick is a main number. The transition is then at
+    # the first stick, so both times are equal.
     if (quantity == "transition_time").any():
         left_out.append("first_stick_time")
     numbers = numbers[~quantity.isin(left_out)]

@@ -79,6 +79,7 @@ def draw_collapse(axes: Axes, runs: pd.DataFrame, quantity: str, colours: Look) 
     if (predicted.isna() | measured.isna()).all():
         axes.text(0.5, 0.5, f"no run reaches ${symbol}$", ha="center", transform=axes.transAxes)
         return
+    # Rims are wide if their colour has a meaning.
     edge_width = 1.0 if "edgecolors" in colours else 0.3
     _error_bars(axes, predicted, measured, runs[f"uncertainty_{quantity}"])
     _scatter(axes, runs, predicted, measured, colours, s=15.0, linewidths=edge_width)
@@ -105,6 +106,7 @@ def ratio_inset(
     line_column : there is one line, with its own colour, for each value of this column
     """
     inset = style.small_inset(axes, box, "measured / formula")
+    # The layout reserves no room for the inset, because it and its legend lie within the panel.
     inset.set_in_layout(False)
     draw_ratio(inset, runs, quantity, x_column, line_column)
     inset.set_xlabel(f"${SYMBOLS[x_column]}$", fontsize=SMALL_TEXT, labelpad=0.0)
