@@ -310,7 +310,7 @@ def rate_pulse(
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
         limit = f"{MAX_HALF_PERIODS:g} half-periods of the leaf springs"
-        allowed = f"laws with which the slip velocity has a peak within {limit}"
+        allowed = f"laws whose slip velocity has a peak within {limit}"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
     # The status is 1 if the integration ended at a terminal event.
