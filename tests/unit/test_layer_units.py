@@ -277,7 +277,7 @@ REFUSED = {
         "poisson_ratio": None,
         "lame_parameter": -1.4e9,
     },
-    "allowed: numbers as large as those of real materials": {"thickness": 1e-300},
+    "allowed: numbers of a size that real materials have": {"thickness": 1e-300},
 }
 
 

@@ -78,7 +78,7 @@ class LayerMaterial:
         except ArithmeticError:
             are_usable = False
         check_that(
-            are_usable, "layer", self.mapping(), "numbers as large as those of real materials"
+            are_usable, "layer", self.mapping(), "numbers of a size that real materials have"
         )
 
     def _convert_lame_or_poisson(self) -> None:

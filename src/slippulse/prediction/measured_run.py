@@ -150,7 +150,7 @@ def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleati
             )
         if math.isnan(time):
             fraction = MEASURE_SETTINGS["fraction"]
-            return f"the left front did not cover {fraction:.0%} of the way to x_minus"
+            return f"the left front did not cover {fraction:.0%} of the way to the balance position"
     elif max(numbers["left"], numbers["right"]) <= 0.0:
         return "both levels of the pre-stress are 0 or negative, so that no pulse keeps running"
     elif math.isnan(time):
