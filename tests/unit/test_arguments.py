@@ -153,7 +153,7 @@ SAMPLES = {
     "samples.times: decreasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
     "decreasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
-    "samples: times or positions are not one-dimensional; allowed: one-dimensional": (
+    "samples: times or positions are not one-dimensional; allowed: 1-d arrays": (
         [0.0, 1.0],
         0.0,
     ),

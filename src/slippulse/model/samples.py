@@ -46,7 +46,7 @@ class Samples:
             object.__setattr__(self, name, copy)
         if self.times.ndim != 1 or self.positions.ndim != 1:
             raise ValueError(
-                "samples: times or positions are not one-dimensional; allowed: one-dimensional arrays"
+                "samples: times or positions are not one-dimensional; allowed: 1-d arrays"
             )
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             allowed = "increasing times >= 0"
