@@ -404,7 +404,8 @@ def test_a_front_that_still_runs_does_not_show_where_it_stops():
         return [runs[evaluated(runs, where)]] * 3
 
     given.lattices = lattices
-    assert front_arrest_position(given, "claim").shown.further["smallest ratio"] == 1.0
+    further = front_arrest_position(given, "claim").shown.further
+    assert further["smallest measured / predicted distance"] == 1.0
 
 
 def test_a_qualitative_claim_without_runs_is_not_measured():
