@@ -246,3 +246,11 @@ def test_no_ensemble_has_to_be_smooth_and_none_has_to_have_pulses(shipped):
     other = {name: sweep | {"scheme": "fixed_step"} for name, sweep in sweeps.items()}
     checks = rough_checks.table({}, {}, {"sweeps": other})
     assert "memory" not in checks["part"].to_numpy()
+
+
+def test_a_barrier_whose_depth_theory_does_not_resolve_is_replaced_by_a_nearby_one():
+    barrier, parameters = -0.16824583120614445, (0.65, 0.08, "elastic")
+    with pytest.raises(ValueError, match="unresolved"):
+        barrier_depth(0.4, barrier, *parameters)
+    expected = barrier_depth(0.4, 1.01 * barrier, *parameters)
+    assert theory.critical_depth(0.4, barrier, *parameters) == pytest.approx(expected, rel=0.01)

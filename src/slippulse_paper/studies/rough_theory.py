@@ -20,6 +20,8 @@ from slippulse.theory.barrier import barrier_depth
 LOWEST_LEVEL = 1e-4
 # The death rate is maximised over these barriers, given as -(stress of the barrier)/(mean level).
 RELATIVE_BARRIERS = np.geomspace(0.03, 10.0, 12)
+# Where the depth of a barrier is not resolved, its stress is multiplied by one of these factors.
+NEARBY_FACTORS = (1.0, 1.001, 0.999)
 # A random walk with exponentially correlated steps that ends at 0 is like a Brownian motion that
 # ends below 0. This is the distance from 0 to that end, divided by the standard deviation of the
 # steps and by their correlation length. It is -zeta(1/2) (Doering, Hagan and Levermore 1987).
@@ -80,9 +82,15 @@ def critical_depth(
 ) -> float:
     """Return the exact depth to which a pulse enters a barrier.
 
-    It is computed only once for all ensembles that have the same level.
+    Theory does not resolve the depth of a few barriers. The result is then that of a nearby
+    barrier, or NaN. It is computed only once for all ensembles that have the same level.
     """
-    return barrier_depth(level, barrier, gamma, damping_ratio, release)
+    for factor in NEARBY_FACTORS:
+        try:
+            return barrier_depth(level, factor * barrier, gamma, damping_ratio, release)
+        except ValueError:
+            continue
+    return math.nan
 
 
 def diffusivity(parameters: Mapping[str, Any]) -> float:
