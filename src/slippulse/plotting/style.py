@@ -305,12 +305,15 @@ def _add_note(figure: Figure, note: str) -> None:
     bottom = note_height / (height + note_height)
     above_note = (0.0, bottom, 1.0, 1.0 - bottom)
     figure.set_layout_engine("constrained", rect=above_note)
-    # The layout engine does not move the legends of the figure.
-    for legend in figure.legends:
-        legend.set_bbox_to_anchor(above_note, figure.transFigure)
     look: Look = {"ha": "right", "va": "bottom", "fontsize": SMALL_TEXT, "color": ORANGE}
     # A note may quote values of the user, in which a dollar sign does not begin a formula.
     figure.text(0.995, 0.005, text, parse_math=False, **look).set_in_layout(False)
+    if figure.legends:
+        # The layout reserves room for the legends of the figure, but does not move them up.
+        figure.draw_without_rendering()
+        figure.set_layout_engine(None)
+        for legend in figure.legends:
+            legend.set_bbox_to_anchor(above_note, figure.transFigure)
 
 
 def _save_png(canvas: FigureCanvasAgg, path: Path, source: str | None) -> None:
