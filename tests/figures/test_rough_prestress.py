@@ -242,8 +242,9 @@ def test_no_ensemble_has_to_be_smooth_and_none_has_to_have_pulses(shipped):
     rows = rough_prestress.table(data, {}, {"sweeps": sweeps}).query("part == 'ensemble'")
     assert [*rows["boundary"]] == ["displacement", "displacement", "stress"]
     assert rows["barrier_rate"].isna().all()
-    # The checks also solve scenes of another scheme.
+    # The checks also solve scenes of another scheme, and accept durations in other units.
     other = {name: sweep | {"scheme": "fixed_step"} for name, sweep in sweeps.items()}
+    other["rough_displacement"]["duration"] = {"half_periods": 1.5}
     checks = rough_checks.table({}, {}, {"sweeps": other})
     assert "memory" not in checks["part"].to_numpy()
 

@@ -141,7 +141,7 @@ def length_rows(sweep: Mapping[str, Any]) -> pd.DataFrame:
     as in the study. The column stop has the end of each half. Tracks of different lengths have
     rows of their own.
     """
-    duration = {"time": LENGTH_FACTOR * sweep["duration"]["time"]}
+    duration = {unit: LENGTH_FACTOR * number for unit, number in sweep["duration"].items()}
     fates_by_end: dict[float, list[Fate]] = {}
     for ensemble in ensembles_of(sweep):
         profiles = [with_longer_track(profile) for profile in ensemble[:LENGTH_SEEDS]]
