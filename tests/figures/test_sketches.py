@@ -8,6 +8,7 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
+import slippulse as sp
 from slippulse_paper.figures import fig01_system_sketch
 from slippulse_paper.figures import fig06_burridge_knopoff as figure
 from slippulse_paper.studies import damage_zone
@@ -136,3 +137,11 @@ def test_a_level_whose_number_would_overlap_another_one_has_no_tick(level, ticks
     blocks = pd.DataFrame({"x": [0.0, 1.0], "prestress": [level, 1.0], "left": level})
     figure.draw_prestress_strip(axes, blocks)
     assert set(axes.get_yticks()) == ticks
+
+
+@pytest.mark.parametrize(("duration", "has_stopped"), [(3.0, False), (12.0, True)])
+def test_only_a_front_that_has_stopped_is_drawn_as_stopped(duration, has_stopped):
+    prestress = sp.Prestress(left=-0.7, right=0.0)
+    numbers = {"dx": 1.0, "duration": duration, "max_step": 0.1, "resolved_blocks": 1}
+    scene = sp.Scene(boundary="stress", prestress=prestress, **numbers)
+    assert figure.left_front_has_stopped(sp.simulate(scene)) is has_stopped

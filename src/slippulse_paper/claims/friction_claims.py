@@ -36,6 +36,8 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     most_blocks = two_way["sliding_at_once"].max()
     most_without_springs = one_way["sliding_at_once"].max()
     is_wide = bool(fewest_blocks > 1.0)
+    regimes = pd.concat([with_springs["regime"], without_springs["regime"]])
+    without_pulse = regimes[~regimes.str.startswith("pulse")]
     # Each boundary condition counts as one run. It is undecided if no rupture becomes a pulse.
     decided = [None if pulses.empty else True for pulses in (two_way, one_way)]
     return Qualitative(
@@ -48,6 +50,7 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
         },
         template_values={
             "wide": is_wide,
+            "others_stop": bool((without_pulse == "arrested").all() and len(without_pulse)),
             "two_way": len(two_way),
             "with_springs": len(with_springs),
             "one_way": len(one_way),

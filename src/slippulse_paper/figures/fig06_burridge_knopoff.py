@@ -71,8 +71,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
         rows = block_states(run)
         rows["scale"] = displacement_scale(rows)
         # Only under a stress boundary, a block stops the left front.
-        stops_front = rows["x"] == position_of_arresting_block(run)
-        rows["arresting_block"] = stops_front & (boundary == "stress")
+        has_stopped = boundary == "stress" and left_front_has_stopped(run)
+        rows["arresting_block"] = (rows["x"] == position_of_arresting_block(run)) & has_stopped
         parameters = {key: run.attrs[key] for key in ("gamma", "left", "right", "width")}
         panels.append(rows.assign(panel=boundary, **parameters))
     return pd.concat(panels, ignore_index=True)
@@ -122,6 +122,13 @@ def position_of_arresting_block(run: xr.Dataset) -> float:
     is_released = np.isfinite(run["release_time"].values)
     leftmost_released = run["x"].values[is_released].min()
     return float(leftmost_released - run.attrs["dx"])
+
+
+def left_front_has_stopped(run: xr.Dataset) -> bool:
+    """Return True if the last released block on the left has stuck by the end of the run."""
+    is_released = np.isfinite(run["release_time"].values)
+    leftmost_released = np.argmin(np.where(is_released, run["x"].values, np.inf))
+    return bool(np.isfinite(run["stick_time"].values[leftmost_released]))
 
 
 def view(run: xr.Dataset) -> tuple[float, float]:
