@@ -40,8 +40,8 @@ def classify_regime(
       last third of the run.
 
     still_fraction : a block counts as at rest below this fraction of the largest velocity
-    steady_tolerance : largest change of a steady pulse; by this much, the speed of a front may be
-        below the wave speed 1
+    steady_tolerance : largest change of a steady pulse. A front still counts as fast as the waves
+        if it is slower than their speed 1 by this much, and as moving if it is faster than this
     """
     change = _change_of_largest_velocity(run)
     x, final_velocity = _final_velocity(run)
@@ -56,7 +56,7 @@ def classify_regime(
         is_sliding = final_velocity >= still_fraction * largest
         running_sides = int(np.any(is_sliding[x < 0.0])) + int(np.any(is_sliding[x > 0.0]))
     ways = "two-way" if running_sides == 2 else "one-way"
-    # If the rupture runs on one side, the slower front still moves if its speed is not nearly 0.
+    # If the rupture runs on one side, the slower front still moves unless its speed is nearly 0.
     has_slow_front = running_sides == 1 and min(left_speed, right_speed) > steady_tolerance
     # An exact solution may not know all velocities. Then they are NaN, and the regime is undecided.
     final_samples = np.asarray(run["sample_velocity"])[-1]

@@ -181,8 +181,9 @@ def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
 def _nucleation_width(scene: Scene, solution: Solution) -> float:
     """Return the distance over which the pre-stress of the nucleation falls off.
 
-    It is the width of the Gaussian at x = 0 (the length of the whole solution if there is no
-    Gaussian), or the distance at which the pre-stress falls below 0 if that is shorter.
+    This distance is the width of the Gaussian at x = 0. If the pre-stress falls below 0 at a
+    shorter distance, it is that distance. Without a Gaussian, the length of the whole solution
+    takes the place of the width.
     """
     profile, dx = scene.prestress, scene.dx
     width = solution.x.size * dx if profile.width is None else profile.width

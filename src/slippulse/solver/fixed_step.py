@@ -127,6 +127,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
     end : time at its end
     """
     slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    # The force per mass, which is the acceleration.
     force, tally = motion.derivatives[ACCELERATION], history.tally
     fastest = 0.0
     # The sum of friction times mean velocity, which is multiplied by dt and dx at the end.
@@ -148,7 +149,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
             friction = motion.law_factor[i] * law_friction
             force[i] -= friction
         after = before + dt * force[i]
-        # A block that has a mirror image counts twice.
+        # A block that has a mirror image counts twice. Block 1 on the axis has none.
         weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
         if after <= 0.0:
             # A block that stops does no work in this step. Its kinetic energy is a separate loss.
@@ -231,7 +232,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         start = tally.time
         if start >= limits.end_time:
             return END_REACHED
-        # A front has come near an end of the lattice if the block at this distance from it slides.
+        # A front has come near an end of the lattice if the block EDGE_BLOCKS from the end slides.
         if sliding[size - EDGE_BLOCKS] or (sliding[EDGE_BLOCKS - 1] and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
         dt, end = next_step(limits, start)

@@ -208,7 +208,9 @@ def speeds_into(
     def excess_over_required(log_excess: np.ndarray, fronts: np.ndarray) -> np.ndarray:
         """Return ln(tau/(1 - tau)) at ln(v - 1) = log_excess, minus the required value.
 
-        fronts : numbers of the fronts to which the elements of log_excess belong
+        The search calls this function with only those fronts whose speed is not found yet.
+
+        fronts : indices of these fronts, one for each element of log_excess
         """
         log_tau = front_law.log_prestress(log_excess, front_law.damping_ratios[fronts])
         # 1 - tau may be rounded to 0. It is then replaced by a number that is smaller than any

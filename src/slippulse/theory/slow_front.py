@@ -148,14 +148,14 @@ class SkippedEntries(NamedTuple):
     skips_any is False if there are none, and skips_all is True if they go on to the left end of the
     panel. last_s is the parameter of the last one. total_motion is the distance that the front
     moves by all entries that were skipped up to this one, on this and on other panels.
-    next_moves_on is False if the entries after them move the front back.
+    next_moves_back is True if the entries after them move the front back, to the left.
     """
 
     skips_any: bool
     skips_all: bool
     last_s: float
     total_motion: float
-    next_moves_on: bool
+    next_moves_back: bool
 
 
 class Advance(NamedTuple):
@@ -474,13 +474,16 @@ class SlowFront:
         return continued_prestress(self.prestress, self.background, x)
 
     def next_entry(self, last_entry_x: float, negligible: float) -> Entry | None:
-        """Return the entry on the curve from which the wave comes that moves the front next.
+        """Return the entry on the curve from which the front is continued.
 
-        It follows the last entry, at the position last_entry_x, along the curve from right to left.
-        Entries are skipped as long as all of them together move the front by no more than the
-        fraction ``negligible`` of the size of the rupture. NO_ENTRY is returned if the entries
-        after the skipped ones move the front back, or if all further entries are skipped. None is
-        returned if the wave comes from beyond the left end of the curve.
+        The search begins at the last entry, at the position last_entry_x, and goes along the curve
+        from right to left. Entries are skipped as long as all of them together move the front by no
+        more than the fraction ``negligible`` of the size of the rupture. The front is continued
+        from the last one of them, so that no entry is left out.
+
+        NO_ENTRY is returned if the entries after the skipped ones move the front back, or if all
+        further entries are skipped. None is returned if the next wave comes from beyond the left
+        end of the curve, where nothing is known.
         """
         # The entry could also be found from its value of T - x. But where the pre-stress is nearly
         # 0, T - x is constant to rounding, and the search would fail.
@@ -490,7 +493,8 @@ class SlowFront:
             return None
         skipped_motion, s = 0.0, first.s
         for panel in range(first.panel, -1, -1):
-            # If the slow front itself made this panel, the entry is found in another way.
+            # No wave enters the rupture on a panel of a slow front, because waves overtake it. The
+            # next wave comes from farther left, and is traced back to the curve.
             if self.is_slow_to_right(panel):
                 return self.entry_behind_slow_front()
             skipped = self.entries_to_skip(Entry(panel, s), skipped_motion, negligible)
@@ -503,8 +507,7 @@ class SlowFront:
             is_first_skipped = skipped.skips_any or panel < first.panel
             if not is_first_skipped:
                 return first
-            if not skipped.next_moves_on:
-                # The entries after the skipped ones would move the front back.
+            if skipped.next_moves_back:
                 return NO_ENTRY
             # The motion must be positive, since a motion of 0 means that nothing was skipped.
             min_motion = 0.1 * ROUNDING_MOTION * self.size
@@ -532,13 +535,14 @@ class SlowFront:
     ) -> SkippedEntries:
         """Return which entries are skipped on a panel, from a given one to the left.
 
-        A wave that entered the rupture at an entry later moves the front. Entries are skipped as
-        long as all of them together move it by no more than the fraction ``negligible`` of the size
+        The wave of each entry moves the front when it arrives there. Entries are skipped as long as
+        all of them together move the front by no more than the fraction ``negligible`` of the size
         of the rupture, because panels do not resolve such small motions. skipped_motion is the
         motion by entries that were skipped on other panels.
         """
         # The entries are sampled from the given one (sample 0) to the left end of its panel, at
         # s = -1. motions has the distance that the front moves by all entries up to each sample.
+        # Where motions falls, entries move the front back.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
         motions = skipped_motion + self.motion_by_entries(entry.panel, s)
         # Only entries in negative pre-stress can move the front back. On a panel with such entries
@@ -552,17 +556,13 @@ class SlowFront:
         if not skips_all:
             # The sample before the first one whose motion is too large, but at least sample 0.
             last = max(0, int(np.argmin(is_negligible)) - 1)
-        # The entries after the skipped ones move the front back if the motion falls from the last
-        # sample that is skipped to the next one.
-        next_moves_on = True
-        if is_negative and not skips_all:
-            next_moves_on = bool(motions[last + 1] >= motions[last])
+        next_moves_back = is_negative and not skips_all and motions[last + 1] < motions[last]
         return SkippedEntries(
             skips_any=last > 0,
             skips_all=skips_all,
             last_s=float(s[last]),
             total_motion=float(motions[last]),
-            next_moves_on=next_moves_on,
+            next_moves_back=bool(next_moves_back),
         )
 
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
@@ -626,10 +626,11 @@ class SlowFront:
     def entry_behind_slow_front(self) -> Entry | None:
         """Return the point where the next wave that arrives at the front has entered the rupture.
 
-        This is used if the wave entered through an earlier part of the slow front itself. Two waves
-        are traced back from the front to the curve: the one that arrives now, and one that arrives
-        slightly later. The next entries are on the panel where the later wave has entered. None if
-        this wave comes from beyond the end of the curve.
+        This function is used if the panel to the left of the last entry belongs to a slow front, on
+        which no wave enters. Two waves are traced back from the front to the curve: the one that
+        arrives now, and one that arrives slightly later. The next entries are on the panel where
+        the later wave has entered. The result is None if this wave comes from beyond the end of the
+        curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))

@@ -200,7 +200,9 @@ def all_within(
 def differences_of_pairs(
     table: pd.DataFrame, sizes: list[str]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the relative differences between the pulses of each pair of runs, and uncertainties.
+    """Yield the relative differences between the pulses of two runs, and their uncertainties.
+
+    This is done for every pair of runs in the table.
 
     sizes : columns that are compared; both arrays have one value for each of them
     """
@@ -311,17 +313,19 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
 def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether pulses in zero pre-stress differ if they began in different pre-stress.
 
-    In each pair of runs, the pulses must have different peak velocities or different half-widths.
-    The difference must be larger than the tolerance.
+    All runs are compared with each other. In each pair, the peak velocities or the half-widths of
+    the two pulses must differ by more than the tolerance.
     """
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
-    # The smallest nonzero damping ratio is that of the figures. Without damping the lattice rings.
+    # Of the runs with damping, take those with the damping ratio of the figures, which is the
+    # smallest one. Runs without damping are left out, because their lattices ring.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]
     allowed = evidence.tolerance(id)
     sizes = ["pulse_peak_velocity", HALF_WIDTH]
     decided: list[bool | None] = []
     for differences, uncertainties in differences_of_pairs(table, sizes):
-        # Pulses count as the same only if their differences are surely within the tolerance.
+        # The result is None, undecided, if the uncertainties allow both: that the pulses differ by
+        # more than the tolerance, and that they do not.
         is_same_pulse = all_within(differences, uncertainties, allowed, add_uncertainties=True)
         decided.append(None if is_same_pulse is None else not is_same_pulse)
     return Qualitative(decided=decided)

@@ -44,7 +44,7 @@ def table(
     Parameters
     ----------
     numbers : table from `main_numbers.scene_numbers`; in SI units if there is a layer
-    theory : measured and predicted numbers of the run
+    theory : row of the run with its measured and predicted numbers
     title : title of the scene
     layer : if given, the table is converted to SI units
     """

@@ -150,9 +150,11 @@ def pulse_rows(gamma: float) -> Rows:
 def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     """Return the rows of one pulse at STATION_POSITIONS and, on some grids, at FAR_STATIONS.
 
-    On the grids of `grids_far_away` the run is so long that the pulse passes FAR_STATIONS. If the
-    pulse splits, the run on the next finer grid is long, too, and there are two damped long runs.
+    There is one run on each grid. On the grids of `grids_far_away`, it is so long that the pulse
+    passes FAR_STATIONS. If the pulse splits in a long run, the run on the next finer grid is also
+    long, and damped runs of this length are added on two grids.
     """
+    # All lengths are proportional to the width of the pulses, which grows as gamma falls.
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
     coarsest = CELLS[0]
     # The run on the coarsest grid shows how long the runs to near and far stations must be.
@@ -166,8 +168,8 @@ def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     if coarsest in far_grids:
         far_rows += rows_at_far_stations("far", far_scene, simulate_layer(far_scene))
     for cells in finer_grids(near_scene):
-        # Each row has the split_position of its run, so the last row shows if the pulse split on
-        # the grid before.
+        # The last row belongs to the finest grid with a long run so far, and has the split_position
+        # of this run.
         split_on_coarser_grid = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
         is_followed_far = split_on_coarser_grid or cells in far_grids
         scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
