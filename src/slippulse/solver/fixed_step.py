@@ -46,9 +46,10 @@ MIN_UNBIASED_CYCLE_STEPS = 50
 def combine_laws(laws: Sequence[type[Friction]]):
     """Return a compiled function that computes the friction of any of some laws.
 
-    Its arguments are the position of the law in the list, the slip since the release, the slip
-    velocity and the two parameters of the law. Kernels cannot choose from a list of functions.
-    Each compiled function therefore handles the first law, and calls another one for the rest.
+    The arguments of this function are the position of the law in the list, the slip since the
+    release, the slip velocity and the two parameters of the law. Kernels cannot choose from a list
+    of functions. Each compiled function therefore handles the first law, and calls another one for
+    the rest.
     """
     if not laws:
         return kernel_function()(lambda law, slip, velocity, parameter_1, parameter_2: 0.0)
