@@ -147,8 +147,8 @@ def shortened_table(profile_as_json: str) -> str:
 def crossed_prestress(run: AnyRun, window: float) -> dict[str, float]:
     """Return the lowest pre-stress that each front has crossed, and the level that it crossed last.
 
-    They have the names lowest_prestress_SIDE, which is NaN if the front has crossed no block, and
-    level_ahead_SIDE, which is NaN if the pre-stress is not constant over the window.
+    These numbers have the names lowest_prestress_SIDE, which is NaN if the front has crossed no
+    block, and level_ahead_SIDE, which is NaN if the pre-stress is not constant over the window.
 
     window : the last part of a front's path, as a fraction of the path
     """

@@ -62,7 +62,7 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 def _paper_transition(run: AnyRun) -> tuple[float, float]:
     """Return the time and the length of the transition by the paper's formulas.
 
-    They are NaN with an extra term of the equation, where the formulas are not valid. If the
+    Both are NaN with an extra term of the equation, where the formulas are not valid. If the
     pre-stress levels on the two sides differ, only the length is NaN.
     """
     if used_extra_terms(run.attrs):

@@ -34,7 +34,8 @@ def _row(run: Run, left_speed: float, right_speed: float) -> dict[str, float]:
         "exact": _exact_pulse(run, right_level, right_speed),
     }
     row: dict[str, float] = {}
-    # If there is no pulse, it is None. It then has none of the attributes, so that they are NaN.
+    # A pulse that does not exist is None and has none of the attributes, so that all numbers are
+    # NaN.
     for source, pulse in right_pulses.items():
         for name in ("width", "slip", "peak_velocity"):
             row[f"{source}_pulse_{name}"] = getattr(pulse, name, np.nan)
@@ -57,8 +58,8 @@ def _exact_pulse(run: Run, level: float, speed: float) -> SteadyPulse | None:
 def _acceleration(pulse: SteadyPulse) -> float:
     """Return the amplitude of slip acceleration, as `acceleration_amplitude` measures it.
 
-    It is the projection of the acceleration on a half wave of a cosine, from the front to the rear
-    of the pulse. The integrals are computed by Gauss-Legendre quadrature.
+    This amplitude is the projection of the acceleration on a half wave of a cosine, from the front
+    to the rear of the pulse. The integrals are computed by Gauss-Legendre quadrature.
     """
     nodes, weights = np.polynomial.legendre.leggauss(32)
     xi = -0.5 * pulse.width * (1.0 + nodes)

@@ -93,7 +93,7 @@ def _first_stick(
 ) -> dict[str, float]:
     """Return the numbers of the transition under a displacement boundary, which is the first stick.
 
-    They are named as the columns of `predictions`.
+    The numbers are named as the columns of `predictions`.
     """
     exact = exact_transition_displacement(profile, gamma, damping_ratio, release)
     return {

@@ -63,7 +63,8 @@ VELOCITY_ERROR, VELOCITY_ERROR_DAMPED = 0.6, 0.6
 
 # Number of levels that represent a table of pre-stress.
 TABLE_LEVELS = 9
-# A table may jump at a point. It is evaluated this fraction of its length before and after it.
+# A table may jump at a point. The pre-stress is therefore evaluated just before and just after each
+# point, at this fraction of the length of the table.
 JUMP_WIDTH = 1e-9
 # Positions, in units of its width, at which a Gaussian on a table is evaluated.
 POSITIONS_IN_WIDTHS = np.linspace(-8.0, 8.0, 1601)

@@ -260,7 +260,7 @@ def list_due_releases(segments, prediction, latest, due):
 def predict_stick(coefficients, slopes, degree, end_velocity, now, step_end):
     """Return the time from ``now`` to ``step_end`` at which a block sticks, inf if it does not.
 
-    It sticks when its velocity, a polynomial of the time since the step began, falls below 0.
+    A block sticks when its velocity, a polynomial of the time since the step began, falls below 0.
 
     coefficients : those of the velocity
     slopes : scratch for the coefficients of its slope

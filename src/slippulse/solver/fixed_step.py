@@ -175,7 +175,8 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 def viscous_loss(medium, velocity, dt, first, last):
     """Return the energy that damping and friction alpha v dissipate in a step.
 
-    It is computed with the velocities at the end of the step. Only blocks first..last-1 move.
+    The energy is computed with the velocities at the end of the step. Only blocks first..last-1
+    move.
     """
     if medium.beta <= 0.0 and medium.alpha == 0.0:
         return 0.0

@@ -140,14 +140,14 @@ class ArrestingCrack(ExplainsRemovedNames):
     def peak_velocity(self) -> float:
         """Largest slip velocity of the pulse that runs to the right, far from the nucleation.
 
-        It is half the integral of the positive pre-stress.
+        This velocity is half the integral of the positive pre-stress.
         """
         return 0.5 * integral(self.prestress, self.slow_start, self.end)
 
     def far_pulse(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the pulse that runs to the right, far from the nucleation.
 
-        There it is a wave that keeps its shape: du/dt depends on x - t alone.
+        Far away the pulse is a wave that keeps its shape: du/dt depends on x - t alone.
 
         Returns
         -------

@@ -1,9 +1,9 @@
 """Front speeds on the damped lattice, without leaf springs.
 
-They follow from a relation between front speed and pre-stress (`wiener_hopf`). It assumes that the
-sliding part behind the front is infinitely long. A pulse is finite, but this changes its front
-speed only if it is hardly wider than a layer of damped waves and lattice waves at the front. This
-layer is a few blocks wide, unless the damping ratio is large.
+The speeds follow from a relation between front speed and pre-stress (`wiener_hopf`). This relation
+assumes that the sliding part behind the front is infinitely long. A pulse is finite, but this
+changes its front speed only if it is hardly wider than a layer of damped waves and lattice waves at
+the front. This layer is a few blocks wide, unless the damping ratio is large.
 """
 
 from typing import NamedTuple
@@ -179,7 +179,8 @@ def log_prestress_in_chunks(
 def first_guess(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
     """Return an estimate of ln(v - 1), with which the search for the front speed v starts.
 
-    It is interpolated between weak and strong damping, for which the speed has a simple formula.
+    The estimate is interpolated between weak and strong damping, for which the speed has a simple
+    formula.
     """
     b, distance_to_1 = damping_ratio, 1.0 - tau
     # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).

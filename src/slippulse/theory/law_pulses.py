@@ -140,8 +140,8 @@ class _LinearSlip:
     def creeps_forever(self) -> bool:
         """Return True if the slip approaches the static slip from below, without end.
 
-        This needs three conditions: no exponential grows with the distance from the front or
-        oscillates, and the one that decays most slowly is negative.
+        The slip does so under three conditions: no exponential grows with the distance from the
+        front or oscillates, and the one that decays most slowly is negative.
         """
         # Of the exponentials, the first one grows, and the second one decays most slowly.
         growing, *decaying = np.abs(self.amplitudes)

@@ -29,12 +29,12 @@ where the decay factor E and the stiffness k are those of `riemann`. X is comput
 the entry e instead of the time, because this function remains smooth where the front stops (there
 dX/de = 0).
 
-The front grows by one panel at a time (`SlowFront.next_panel`). Its entries form a chunk, which is
-part of one panel of the known curve, from right to left. `FreeBoundary` is the equation above at
-the nodes of the chunk. Newton's method solves it for the positions X. The chunk is halved if the
-solution is not resolved. It is shortened where the front stops, or where it reaches the end of the
-negative pre-stress, which is called the mark. The new panel belongs to the known curve from then
-on.
+The front grows by one panel at a time (`SlowFront.next_panel`). The entries of this panel form a
+chunk, which is part of one panel of the known curve, from right to left. `FreeBoundary` is the
+equation above at the nodes of the chunk. Newton's method solves it for the positions X. The chunk
+is halved if the solution is not resolved. It is shortened where the front stops, or where it
+reaches the end of the negative pre-stress, which is called the mark. The new panel belongs to the
+known curve from then on.
 """
 
 from dataclasses import dataclass
@@ -138,7 +138,7 @@ class Entry(NamedTuple):
     skipped_motion: float = 0.0
 
 
-# This stands for an entry if no further entry moves the front on.
+# The result of a search for an entry if no further entry moves the front on.
 NO_ENTRY = Entry(panel=-1, s=1.0)
 
 
@@ -223,8 +223,8 @@ def _runs_back(x: np.ndarray) -> bool:
     x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
     """
     dx_ds = NODES_TO_DERIVATIVES @ x
-    # From the start, s = -1, to the first root of dx/ds (or the end, s = 1) dx/ds has one sign. It
-    # is examined in the middle between them.
+    # From the start, s = -1, to the first root of dx/ds (or the end, s = 1) dx/ds has one sign.
+    # This sign is examined in the middle between them.
     first_root = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
     middle = 0.5 * (-1.0 + first_root)
     return bool(legendre.legval(middle, NODES_TO_SERIES @ dx_ds) < 0.0)
@@ -251,10 +251,10 @@ def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
 class FreeBoundary:
     """The equation of the free boundary on one chunk, for the positions X of the front.
 
-    It is one integral for each node of the chunk, from an entry to the front. Arrays have one row
-    for each of these integrals, and one column for each node of the curve. The first columns are
-    those of the known curve, from the panel of the entries on, and the last ones those of the new
-    panel.
+    The equation consists of one integral for each node of the chunk, from an entry to the front.
+    Arrays have one row for each of these integrals, and one column for each node of the curve. The
+    first columns are those of the known curve, from the panel of the entries on, and the last ones
+    those of the new panel.
     """
 
     def __init__(self, front: "SlowFront", chunk: Chunk) -> None:
@@ -656,8 +656,8 @@ class SlowFront:
     def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Return the positions of the front at the nodes of a chunk of entries, by Newton's method.
 
-        It is None if the chunk is too long, so that the method fails, or so that the Legendre
-        series of the result does not fall below SERIES_TOLERANCE.
+        The result is None if the chunk is too long, so that the method fails, or so that the
+        Legendre series of the positions does not fall below SERIES_TOLERANCE.
         """
         equation = FreeBoundary(self, chunk)
         # The positions, and the largest change of them in the last step.
@@ -730,10 +730,11 @@ class SlowFront:
         )
 
     def straight_to_mark(self, mark: float) -> Advance:
-        """Continue the front at the wave speed, which is 1, to a near end of negative pre-stress.
+        """Continue the front at the wave speed, which is 1, to the mark if it is near.
 
-        This end is the mark. The front cannot be resolved just before a mark where tau rises to 0.
-        If the mark is not near, no panel is returned, and the reason "unresolved".
+        The mark is the end of the negative pre-stress. The front cannot be resolved just before a
+        mark where tau rises to 0. If the mark is not near, no panel is returned, and the reason
+        "unresolved".
         """
         if mark - self.x0 > MARK_DISTANCE * self.size:
             return Advance(None, "unresolved")

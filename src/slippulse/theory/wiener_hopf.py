@@ -13,8 +13,8 @@ by a = alpha dx (`alpha_dx`). The symbol is
 
     M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
-where M_+ is analytic and without zeros for Im k > 0. It is an exact product of an algebraic
-function and two factors that decay on opposite sides of the real axis,
+where M_+ is analytic and without zeros for Im k > 0. M is an exact product of an algebraic function
+and two factors that decay on opposite sides of the real axis,
 
     M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),   rho = (r - q)/(r + q),
     r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w).
@@ -149,7 +149,7 @@ def _log_m_plus_at_iy(
 ) -> np.ndarray:
     """Return ln M_+(i y) of each front, where y = 1/(b v) and b is the damping ratio.
 
-    It is the integral of ln(1 - rho e^{iz})/(z - i y) along the contour, divided by 2 pi i.
+    The result is the integral of ln(1 - rho e^{iz})/(z - i y) along the contour, divided by 2 pi i.
     log_values, the result of `log_factor`, are the values of this logarithm at the nodes.
     excess_speed is v - 1.
     """
