@@ -72,7 +72,7 @@ class Change(NamedTuple):
 def changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return all ordered pairs of combinations that differ in one choice only.
 
-    This must be a choice that the paper leaves open (CHOICE_WORDS). Combinations without a
+    This choice must be one that the paper leaves open (CHOICE_WORDS). Combinations without a
     deviation are left out. So are those at the last release, which is a property of the lattice.
     """
     compared = []
@@ -100,9 +100,9 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return one change for each choice that decides whether the claim holds.
 
-    It is the smallest change of this choice from a combination at which the claim holds to one at
-    which it fails. Choices with larger effects come first. If no choice decides, the result is the
-    single change with the largest effect.
+    The returned change is the smallest one of this choice, from a combination at which the claim
+    holds to one at which it fails. Choices with larger effects come first. If no choice decides,
+    the result is the single change with the largest effect.
     """
     # Every change between exact solutions ranks above all changes between lattices.
     rank = attrgetter("exact", "size")

@@ -84,8 +84,8 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether a pulse in zero pre-stress decays under rate strengthening, with held stress.
 
-    It decays if its largest velocity falls by more than the tolerance, on the finest and on the
-    coarsest lattice. Each value of the rate strengthening counts as one run.
+    A pulse decays if its largest velocity falls by more than the tolerance, on the finest and on
+    the coarsest lattice. Each value of the rate strengthening counts as one run.
     """
     # The rows with this role are for held stress. They have the largest velocity at several times,
     # for each rate strengthening and spacing dx.

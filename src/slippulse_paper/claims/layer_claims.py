@@ -381,7 +381,7 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
 def poorly_resolved(steady: pd.DataFrame) -> dict[str, float]:
     """Return numbers on the steady pulses for which the finest grid is rather coarse.
 
-    These have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
+    Such pulses have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
 
     resolved_cells : the constant RESOLVED_CELLS
     unresolved : number of these pulses
@@ -616,7 +616,7 @@ def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
 def with_varied_energy(pulses: pd.DataFrame) -> pd.DataFrame:
     """Return the pulses that differ only in gamma and fracture energy.
 
-    They have the level of pre-stress that most pulses have.
+    All of them have the level of pre-stress that most pulses have.
     """
     levels = pulses.reset_index()["tau0"]
     most_frequent_level = float(levels.mode().iloc[0])
@@ -676,7 +676,7 @@ def quantities_at_one_level(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses in one dimension with the same friction, and with damping.
 
-    They are for the pulses that differ only in gamma and fracture energy.
+    The quantities are those of the pulses that differ only in gamma and fracture energy.
 
     line_speed : front speed
     line_width, line_slip : width and slip, divided by those of the paper's formulas
@@ -692,9 +692,9 @@ def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 def largest_speeds(evidence: Evidence) -> dict[str, float]:
     """Return the speeds of the fastest pulse on its coarsest and on its finest grid.
 
-    They show that a speed slightly above that of the fastest wave is an error of the grid. Also
-    return the largest speed of all pulses with damping (damped_speed), on the finest grids. Speeds
-    are measured at the last station.
+    The two speeds show that a speed slightly above that of the fastest wave is an error of the
+    grid. Also return the largest speed of all pulses with damping (damped_speed), on the finest
+    grids. Speeds are measured at the last station.
     """
     at_station = rows_at_station(evidence, LAST)
     rows = at_station.query("part == 'pulse'")

@@ -256,8 +256,9 @@ class Ledger:
     def listed(self, id: str, words: str) -> str:
         """Return some further numbers of a claim as Markdown, such as "12 *cracks*; 3 *pulses*".
 
-        Their keys have the form "TEXT: NAME". Those whose TEXT contains the given words are listed.
-        If there is none, the result is "none". A page may break the words at the end of a line.
+        The keys of further numbers have the form "TEXT: NAME". The numbers whose TEXT contains the
+        given words are listed. If there is none, the result is "none". A page may break the words
+        at the end of a line.
         """
         words, parts = " ".join(words.split()), []
         for key, value in self(id).further.items():

@@ -97,8 +97,9 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
 def numbers_of_rule(evidence: Evidence, rule: Always) -> dict[str, float]:
     """Return the additional numbers of a rule, by words for the table of claims.
 
-    They are values of expressions over the runs of the first sweep (numbers), and the number of
-    runs with each regime among those that meet a condition (counted).
+    The numbers are values of expressions over the runs of the first sweep (field numbers of the
+    rule), and the number of runs with each regime among those that meet a condition (field
+    counted).
     """
     first_sweep = evidence.tables[rule.sweeps[0]]
     by_words = {}
@@ -113,14 +114,14 @@ def numbers_of_rule(evidence: Evidence, rule: Always) -> dict[str, float]:
 def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     """Return two columns of signs: 1 if a pulse grows, -1 if it decays, 0 if it does neither.
 
-    Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond. It
-    is compared with a reference: the pulse of an otherwise equal run that stays at the level 0. By
-    theory this pulse keeps its size.
+    Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond.
+    The pulse is compared with a reference: the pulse of an otherwise equal run that stays at the
+    level 0. By theory the reference keeps its size.
 
     velocity_growth : sign of the velocity change; 0 if not larger than that of the reference
     width_growth : sign of the half-width minus that of the reference
 
-    Both are -1 if the pulse has died, and 0 if they are unknown.
+    Both signs are -1 if the pulse has died, and 0 if they are unknown.
     """
     keys = ["left", "right", "width", "dx", "damping_ratio", "release", "friction"]
     references = table[table["beyond"] == 0.0].drop_duplicates(keys).set_index(keys)
@@ -151,7 +152,7 @@ def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
 def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether the layer is thin: its thickness must be much smaller than each pulse width.
 
-    The thickness is 1. Divided by the width, it must not be larger than the tolerance. This is a
+    The thickness, 1, divided by the width must not be larger than the tolerance. A thin layer is a
     premise of the model. If it fails, the verdict is "premise not met".
     """
     table = evidence.finest("any_prestress")
@@ -234,8 +235,9 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether a pulse that enters another pre-stress becomes a steady pulse there.
 
-    Its final slip must be that of a simulated steady pulse in this pre-stress, within the tolerance
-    and on the two finest lattices. Deviations from two predicted slips are shown, too.
+    The final slip of the pulse must be that of a simulated steady pulse in this pre-stress, within
+    the tolerance and on the two finest lattices. Deviations from two predicted slips are shown,
+    too.
     """
     deviations_by_lattice, answers_by_lattice = [], []
     perturbed, unperturbed = evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED)

@@ -194,8 +194,8 @@ def arrests(evidence: Evidence) -> list[Runs]:
 def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> pd.DataFrame:
     """Return the run with the widest nucleation at each level, with the paper's estimates added.
 
-    These are estimates of the time that the left front needs for the distance that it has covered,
-    and of the distance between the fronts at this time. The paper assumes that both run at speed 1.
+    The paper estimates the time that the left front needs for the distance that it has covered, and
+    the distance between the fronts at this time. The paper assumes that both run at speed 1.
 
     new_names : new names of the columns, by their names in the table
     """
@@ -366,9 +366,9 @@ def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, 
 def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge the paper's estimate of the arrest of the left front, under a stress boundary.
 
-    It is judged for each fraction of the path at which the front may count as arrested, and at the
-    last release. The claim also shows the median ratio of measured and estimated numbers for each
-    of these, and the length of the arrow in figure 4 divided by the estimate.
+    The estimate is judged for each fraction of the path at which the front may count as arrested,
+    and at the last release. The claim also shows the median ratio of measured and estimated numbers
+    for each of these, and the length of the arrow in figure 4 divided by the estimate.
 
     quantity : "time" or "length"
     """
@@ -581,9 +581,9 @@ def divergence_by_level(table: pd.DataFrame) -> list[Divergence]:
 def divergence(runs: pd.DataFrame) -> Divergence:
     """Return whether T_trans and L_trans diverge as gamma approaches 0.
 
-    Both must fall from each value of gamma to the next larger one. At the three smallest values,
-    both must be powers of gamma with an exponent that is negative by more than three standard
-    errors. The answer is None if there are fewer than three values of gamma.
+    T_trans and L_trans must fall from each value of gamma to the next larger one. At the three
+    smallest values, both must be powers of gamma with an exponent that is negative by more than
+    three standard errors. The answer is None if there are fewer than three values of gamma.
 
     runs : runs that differ only in gamma, in ascending order
     """

@@ -53,7 +53,7 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
 def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
     """Return the largest time step of a run, divided by dx.
 
-    It is the user-defined step of the simulation, or the default step.
+    The result is the user-defined step of the simulation, or the default step.
     """
     accuracy = simulation["accuracy"]
     step = simulation.get("max_step", _default_time_step(simulation, run, friction))

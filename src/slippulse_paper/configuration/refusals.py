@@ -163,8 +163,8 @@ def _last_known_entry(path: Path, config: Any) -> _Entry:
 def _schema_of_list_entry(schema: Mapping) -> Any:
     """Return the schema for the entries of a list, or None if there is none.
 
-    It is also None if the entries are rows of numbers. A wrong row is refused with the whole list,
-    whose schema describes the rows.
+    The result is also None if the entries are rows of numbers. A wrong row is refused with the
+    whole list, whose schema describes the rows.
     """
     items = schema.get("items")
     # In JSON Schema, only a row of a fixed length has this key.

@@ -49,8 +49,9 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
     """Return a simulation as a dictionary with everything that its results depend on.
 
-    Its own keys take precedence over the defaults of the model. The number of chunks is left out,
-    since results do not depend on it. ``accuracy`` has the numerical parameters from `accuracy_of`.
+    Keys of the simulation take precedence over the defaults of the model. The number of chunks is
+    left out, since results do not depend on it. ``accuracy`` has the numerical parameters from
+    `accuracy_of`.
     """
     defaults = Model.model_validate(model).plain()
     # The model has one value of these keys, and a simulation a list.
@@ -152,8 +153,9 @@ def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndar
 def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any]) -> float:
     """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
 
-    It is the sum of the distance of the farthest bump, where slip may start, the distance that a
-    front covers in the duration, and the width in which the Gaussian at x = 0 makes it faster.
+    The bound is the sum of the distance of the farthest bump, where slip may start, the distance
+    that a front covers in the duration, and the width in which the Gaussian at x = 0 makes it
+    faster.
 
     damping_ratio : largest damping ratio of the scene
     profile : the keys of the scene that describe its pre-stress
@@ -198,7 +200,7 @@ def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
     if "profiles" in ends:
         ends["profiles"] = ends_of_ensembles(ends["profiles"])
     if "beyond" in ends:
-        # This mapping has a list of levels, which the pre-stress has beyond a step.
+        # ``beyond`` has a list of levels, which the pre-stress has beyond a step.
         ends["beyond"] = with_ends_of_lists(ends["beyond"])
     for key in ORDERED:
         if isinstance(ends.get(key), list):

@@ -115,7 +115,7 @@ def run_count(simulation: Mapping) -> int:
 
 
 def _axes(simulation: Mapping) -> dict[str, Collection]:
-    """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
+    """Return the lists of a simulation by name. Each combination of their entries is a run."""
     # A list that is not given has one entry: its default, or None if something else sets the value.
     # The damping is the list of beta, or that of the damping ratio if there is no list of beta.
     release = simulation["release"]

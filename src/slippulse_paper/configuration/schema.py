@@ -34,7 +34,7 @@ LIMITS = {"above": "gt", "at_least": "ge", "at_most": "le", "below": "lt"}
 class Block(BaseModel):
     """A mapping of the configuration.
 
-    It has only known keys, no value is converted to another type, and all numbers are finite.
+    A block has only known keys, no value is converted to another type, and all numbers are finite.
     """
 
     model_config = ConfigDict(

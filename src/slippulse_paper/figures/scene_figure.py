@@ -34,7 +34,7 @@ def table(
 ) -> pd.DataFrame:
     """Return everything that the figure shows, with a role in each row.
 
-    These are the roles of `run_table`, and:
+    The roles are those of `run_table`, and:
 
     title : the title of the scene
     profile : a field at the end of the run, as a function of position

@@ -141,7 +141,7 @@ def _table_names(results: Path) -> set[str]:
 def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> None:
     """Record in the result how the configurations or the verdicts of both folders differ.
 
-    They are not compared if a file is missing or older than other results.
+    The contents are not compared if a file is missing or older than other results.
 
     name : "provenance.json" for the configurations, "claims.json" for the verdicts
     """

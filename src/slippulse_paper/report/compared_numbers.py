@@ -205,7 +205,7 @@ def _read_table(path: Path, required: Iterable[str]) -> pd.DataFrame:
 def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
     """Return the uncertainty of each number by a grid study.
 
-    It is NaN if the study does not have the number, or has another value for it.
+    The uncertainty is NaN if the study does not have the number, or has another value for it.
 
     path : table of the grid study, which may not exist
     numbers : table with one row for each run (point) and one column for each quantity

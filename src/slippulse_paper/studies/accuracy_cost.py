@@ -98,7 +98,7 @@ class Setting(NamedTuple):
     ) -> xr.Dataset:
         """Simulate a scene with this setting, or with a shorter step if its step is unstable.
 
-        It has a displacement boundary, or a stress boundary if ``gamma`` is 0.
+        The scene has a displacement boundary, or a stress boundary if ``gamma`` is 0.
         """
         # The textbook scheme and the exact solution do not use the order, but a Scene needs one.
         order = max(self.order, 3)

@@ -98,7 +98,8 @@ class Case:
     def expected(self) -> float:
         """Return the value that the quantity should have; NaN if the case is refused or stopped.
 
-        It is 0 for quantities that are errors, drifts, or counts of events that should not happen.
+        The value is 0 for quantities that are errors, drifts, or counts of events that should not
+        happen.
         """
         if self.expected_verdict in (REFUSED, STOPPED):
             return math.nan

@@ -4,7 +4,7 @@ A reading is a number that was read off the figure, such as the position of the 
 time. A trial is a pair (tau_0, gamma), and has a value for each reading. This value is taken from a
 lattice run, because the figure was drawn from a lattice with a finite spacing. The table also has
 the value of the exact solution, and the correction, which is the lattice value minus the exact one.
-It is largest for the largest velocity, which is still growing when the figure ends.
+The correction is largest for the largest velocity, which is still growing when the figure ends.
 """
 
 from itertools import product

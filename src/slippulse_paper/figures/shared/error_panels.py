@@ -64,7 +64,7 @@ def error_rows(
 def _smallest_error_of_cheaper(rows: pd.DataFrame) -> pd.Series:
     """Return for each row the smallest error of all cheaper rows with its scheme and order.
 
-    It is infinite for the cheapest row.
+    The error is infinite for the cheapest row.
 
     rows : settings in the order of their cost
     """
