@@ -86,8 +86,8 @@ def diffusivity(parameters: Mapping[str, Any]) -> float:
 
     The result is 2 pi S(0), where S(k) is the power spectrum of the field. S(k) is proportional to
     (1 + k^2 l^2)^-(H + 1/2), where l is the correlation length and H the Hurst exponent. The
-    integral of S(k) over all k is the variance of the field. From this follows S(0) = variance l
-    Gamma(H + 1/2)/(sqrt(pi) Gamma(H)).
+    integral of S(k) over all k is the variance of the field. From this follows
+    S(0) = variance l Gamma(H + 1/2)/(sqrt(pi) Gamma(H)).
     """
     hurst, deviation = parameters["hurst"], parameters["deviation"]
     shape = 2.0 * math.sqrt(math.pi) * gamma_function(hurst + 0.5) / gamma_function(hurst)
