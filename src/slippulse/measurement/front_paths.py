@@ -2,7 +2,7 @@
 
 The release times of the blocks give the path of a front, and their stick times give the path of a
 trailing edge. The argument ``edge`` of a function selects one of them by the name of its times,
-"release_time" or "stick_time".
+"release_time" or "stick_time". The argument ``side`` is "right" or "left" of x = 0.
 """
 
 from typing import NamedTuple

@@ -76,7 +76,10 @@ def _convert_coordinates(table: pd.DataFrame, layer: Layer) -> dict[str, str]:
 
 
 def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: Layer) -> str:
-    """Convert the values of some rows of a table to SI units in place, and return their unit."""
+    """Convert the values of some rows of a table to SI units in place, and return their unit.
+
+    quantity : physical quantity of these values, such as "stress"
+    """
     numbers = layer.convert_to_si(table.loc[rows, "value"], quantity)
     unit = readable_unit(quantity, numbers)
     table.loc[rows, "value"] = numbers / unit.value

@@ -277,7 +277,11 @@ def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
-    """Place a legend below all panels of a figure."""
+    """Place a legend below all panels of a figure.
+
+    handles : one artist for each entry of the legend
+    columns : number of columns of the legend
+    """
     figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 

@@ -412,6 +412,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
 
     Returns the largest velocity at the ends and the middles of the segments, which shows a blow-up.
 
+    order : degree of the Taylor polynomial of the velocity
     h : duration of the step
     """
     w, event_slip = motion.derivatives, motion.event_slip

@@ -79,8 +79,8 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
     """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
     Shear waves run at the speed sqrt(gamma/2). The waves of a source that moves along the top at
-    the speed v have a straight wave front. It meets the fault at the distance sqrt(2 v^2/gamma - 1)
-    behind the source.
+    the speed v have a straight wave front, which meets the fault at the distance sqrt(2 v^2/gamma -
+    1) behind the source.
     """
     gamma = pulses.index.get_level_values("gamma")
     return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)
@@ -105,8 +105,8 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are also steady if the strength depends on the normal stress.
 
-    The column coupling has the factor by which the strength depends on it. The pulses that run to
-    the right and to the left then differ, and each counts.
+    The column coupling has the factor by which the strength depends on this stress. The pulses that
+    run to the right and to the left then differ, and each counts.
 
     steady_right, steady_left : number of steady pulses that run to each side
     steady_to, failed_from : largest coupling of a steady pulse, smallest of one that is not steady

@@ -175,15 +175,16 @@ def transitions(evidence: Evidence) -> list[Runs]:
 def arrests(evidence: Evidence) -> list[Runs]:
     """Return runs under a stress boundary, measured when the left front counts as arrested.
 
-    In an exact solution this is when the front has covered a fraction of |x_minus|. On a lattice it
-    is at the last release. One run is enough for each level, as `widest_at_each_level` explains.
+    In an exact solution the front counts as arrested when it has covered a fraction of |x_minus|,
+    and on a lattice at its last release. One run is enough for each level, as
+    `widest_at_each_level` explains.
     """
     arrest_runs = []
     for choice, tables in exact_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, TRANSITION_COLUMNS) for table in tables]
         arrest_runs.append(Runs(choice, widest))
-    # The choices of exact solutions include the nucleation and the fraction. Those of lattices get
-    # them here.
+    # The choices of exact solutions include the nucleation and the fraction. The choices of
+    # lattices do not, and so these two are added.
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
@@ -209,7 +210,8 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
         # speed 1 the estimated time in its table is equal to |x_minus|.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
     # The new estimates are for the covered distance. At speed 1 the left front needs a time equal
-    # to it. Since the right front has run equally far, the fronts are twice as far apart.
+    # to this distance. Since the right front has run equally far, the fronts are twice as far
+    # apart.
     covered = widest["covered"]
     return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 

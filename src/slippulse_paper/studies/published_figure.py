@@ -80,8 +80,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         left_panel_rows(panel, release, part)
         for release, part in product(RELEASES, ("profile", "arrows"))
     ]
-    # The damping ratio of the notebook is larger than those of the fits with its release rule. Its
-    # fit begins at the result for the largest of these, which is in the last row.
+    # The damping ratio of the notebook is larger than those of the fits with its release rule. The
+    # fit of the notebook begins at the result for the largest of these, which is in the last row.
     profiles = pd.concat(parts).query("part == 'profile'")
     closest = profiles[profiles["release"] == NOTEBOOK_RELEASE].iloc[-1]
     guess = closest[["tau0", "gamma"]].to_numpy(float)
