@@ -76,8 +76,8 @@ def _fields_at_end(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[s
     interval = ACCELERATION_INTERVAL * end
     velocity = rupture.slip_velocity(x, end)
     velocity_change = velocity - rupture.slip_velocity(x, end - interval)
-    # The rupture gives the first stick of a point. It is also the last one where the solution is
-    # known until the end.
+    # The rupture gives the first stick of a point. The first stick is also the last one where the
+    # solution is known until the end.
     is_known = rupture.horizon(x) > end
     return {
         "release_time": rupture.release_time(x),

@@ -144,7 +144,8 @@ def predict_release(medium, motion, prediction, block, now, step_end, top):
     # their slip and, through damping, by their velocities. The coefficient of power k is derivative
     # k of the stress, divided by k!. In the loop, ``inverse_factorial`` is 1/(k - 1)!, then 1/k!.
     inverse_factorial, damping = 1.0, 0.0
-    # With beta < 0, the sign that the paper prints, damping is not part of the stress here.
+    # With beta < 0, the sign that the paper prints, the stress that decides on a release does not
+    # contain damping.
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
     for k in range(1, top + 1):

@@ -362,7 +362,7 @@ class Curve:
 
         Each field (such as T + x) is a polynomial of s on its panel, where it is monotonic. numbers
         says which field and which panel (see `polynomial_numbers`). Newton's method starts from
-        linear interpolation between the ends of the panel. Its steps do not leave the panel.
+        linear interpolation between the ends of the panel. The steps do not leave the panel.
         """
         at_left, at_right = self.end_values[:, numbers]
         rise = at_right - at_left

@@ -156,7 +156,7 @@ def slowness_nearly_one(
 ) -> np.ndarray:
     """Return 1/v of fronts into pre-stress tau next to 1, which are very fast.
 
-    With b = beta/dx it solves -ln tau = b/v + 1/(2 v^2) under rule "total", and
+    With b = beta/dx, 1/v solves -ln tau = b/v + 1/(2 v^2) under rule "total", and
     -ln tau = 1/(2 v^2) under rule "elastic". Terms in 1/v^3 are neglected.
     """
     minus_log_tau = -np.log(tau)

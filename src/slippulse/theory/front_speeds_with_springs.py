@@ -149,7 +149,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     check_number("beta", beta, above=0.0)
     # gamma beta^2 (1 - tau)^2/tau^2, by which leaf springs slow the front.
     slowing = (np.sqrt(float(gamma)) * beta * (1.0 - tau0) / tau0) ** 2
-    # This condition is v > 1.
+    # This condition is v > 1: the front must outrun the waves.
     if not slowing < tau0 / (1.0 - tau0):
         raise ValueError(
             f"tau0: {tau0!r}; allowed: a pre-stress at which the front is faster than the waves,"

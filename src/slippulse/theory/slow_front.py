@@ -291,7 +291,8 @@ class FreeBoundary:
         """
         # The integrals of tau from the end of the known curve, x0, to the positions.
         prestress_integral, tau = self.crossed_by_front(x)
-        # Without leaf springs and drag the kernel is 1.
+        # Without leaf springs and drag the kernel is 1, and each integral depends on its own
+        # position only.
         if self.front.stiffness == self.front.alpha == 0.0:
             if not np.all(tau < 0.0):
                 return None

@@ -255,7 +255,6 @@ def _advance_slow_front(fast_front: FastFront, stretch: Stretch, side: float, un
     # A front cannot stop in positive pre-stress. If it seems to, its motion is not known.
     if reason == "stops" and fast_front.prestress(side * end.x) > EQUALITY_TOLERANCE:
         reason = "positive_prestress"
-    # In all cases but these, the front is still slow, and its next panel is added later.
     if reason in END_REASONS:
         stretch.end_reason[side] = reason
     elif end.time >= until:

@@ -714,7 +714,8 @@ def largest_speeds(evidence: Evidence) -> dict[str, float]:
 def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
-    The numbers of `numbers_on_splits`, which say how many of them split and where, are among these.
+    The result contains the numbers of `numbers_on_splits`: how many of these pulses split, and
+    where.
 
     from_near_slip : largest relative change of the slip between the first and the last station, of
         pulses that do not split

@@ -79,7 +79,8 @@ def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
         # The reason begins with the key in the mapping.
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
-    # A number that is missing in a row has an int at the end of the path. It is another kind.
+    # A missing key has a text at the end of the path. A missing number in a row has an int there,
+    # and is not described here.
     if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     return _unknown_key_line(path, config) if kind == "extra_forbidden" else None
