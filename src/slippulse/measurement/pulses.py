@@ -53,7 +53,7 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     if pulses:
         leading_velocity[pulses[-1]] = velocity[pulses[-1]]
     peak_velocity, peak_distance = parabola_peak(distance, leading_velocity)
-    trailing_edge = _trailing_edge(run, peak_distance, speed) if pulses else np.nan
+    trailing_edge = _trailing_edge_distance(run, peak_distance, speed) if pulses else np.nan
     width = front - trailing_edge
     # The slip is measured at stuck blocks that are close behind the trailing edge. Those in the
     # inner half of its path are left out, because the nucleation has influenced them.
@@ -80,7 +80,7 @@ def _mean_near_end(distance: np.ndarray, values: np.ndarray, length: float) -> f
     return float(np.mean(values[is_near_end]))
 
 
-def _trailing_edge(run: AnyRun, peak_distance: float, speed: float) -> float:
+def _trailing_edge_distance(run: AnyRun, peak_distance: float, speed: float) -> float:
     """Return the distance of the trailing edge from x = 0 at the end of a run.
 
     The four blocks behind the peak that stuck last are extrapolated to the end at the front speed.

@@ -39,7 +39,7 @@ def _row(run: Run, left_speed: float, right_speed: float) -> dict[str, float]:
     for source, pulse in right_pulses.items():
         for name in ("width", "slip", "peak_velocity"):
             row[f"{source}_pulse_{name}"] = getattr(pulse, name, np.nan)
-        row[f"{source}_pulse_acceleration"] = _acceleration(pulse) if pulse else np.nan
+        row[f"{source}_pulse_acceleration"] = _acceleration_amplitude(pulse) if pulse else np.nan
     left_pulse = _exact_pulse(run, left_level, left_speed)
     for name in ("slip", "peak_velocity"):
         row[f"exact_left_pulse_{name}"] = getattr(left_pulse, name, np.nan)
@@ -55,7 +55,7 @@ def _exact_pulse(run: Run, level: float, speed: float) -> SteadyPulse | None:
     )
 
 
-def _acceleration(pulse: SteadyPulse) -> float:
+def _acceleration_amplitude(pulse: SteadyPulse) -> float:
     """Return the amplitude of slip acceleration, as `acceleration_amplitude` measures it.
 
     This amplitude is the projection of the acceleration on a half wave of a cosine, from the front

@@ -59,7 +59,9 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
     has_equal_levels = profile.left == profile.right and profile.left > 0.0
     if not (_gaussian_width(profile) and has_equal_levels):
         return {**NO_TRANSITION}
-    find_stick = partial(_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release)
+    find_stick = partial(
+        _numbers_of_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release
+    )
     return NO_TRANSITION | value_or(find_stick, NO_TRANSITION)
 
 
@@ -88,7 +90,7 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
 
 
 @cache
-def _first_stick(
+def _numbers_of_first_stick(
     profile: Prestress, gamma: float, damping_ratio: float, release: str
 ) -> dict[str, float]:
     """Return the numbers of the transition under a displacement boundary, which is the first stick.

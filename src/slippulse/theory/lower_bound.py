@@ -124,7 +124,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     # The points of the curve where the past of a begins, and where the past of b ends.
     ends = part.curve.crossings(y=0.5 * (a + b), xi=time - a, eta=time + b)
     bound = _lower_bound(part, x=x, velocity=velocity, time=time, ends=ends)
-    return (bound > 0.0) | _has_positive_integrand(part, x=x, time=time, ends=ends)
+    return (bound > 0.0) | _velocity_is_surely_positive(part, x=x, time=time, ends=ends)
 
 
 def _lower_bound(
@@ -168,7 +168,7 @@ def _lower_bound(
     return np.where(c_slides, bound, -np.inf)
 
 
-def _has_positive_integrand(
+def _velocity_is_surely_positive(
     part: Part, x: np.ndarray, time: float, ends: tuple[Crossing, Crossing]
 ) -> np.ndarray:
     """Return a mask of the pairs of positions a and b between which du/dt is surely positive.

@@ -168,7 +168,7 @@ class OverChoices(Claim):
         changes : the changes of choices on which the verdict depends
         choice_names : words for each choice
         settings, unsure : the choices in words, and the template values of the result, at the first
-            combination with a caveat (`_in_doubt`)
+            combination with a caveat (`_combination_in_doubt`)
         """
         deviations: dict[bool | None, list] = {True: [], False: [], None: []}
         for combination in self.combinations:
@@ -180,7 +180,7 @@ class OverChoices(Claim):
             if combination.fraction == LAST_RELEASE_FRACTION
             and combination.result["deviation"] is not None
         ]
-        in_doubt = self._in_doubt()
+        in_doubt = self._combination_in_doubt()
         settings = [
             f"{CHOICE_WORDS[name]} {text_of_value(value)}"
             for name, value in in_doubt.choice.items()
@@ -196,7 +196,7 @@ class OverChoices(Claim):
             "unsure": in_doubt.claim.template_values,
         }
 
-    def _in_doubt(self) -> Combination:
+    def _combination_in_doubt(self) -> Combination:
         """Return the first combination whose verdict has a caveat; the first one if none has."""
         for combination in self.combinations:
             if combination.result["verdict"] == rules.CAVEAT:

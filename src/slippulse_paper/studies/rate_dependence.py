@@ -90,7 +90,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     maps = []
     for regime, fraction in MAPPED_FRACTIONS.items():
         maps.append(_velocity_map(regime, fraction * critical_alpha))
-    arrests = [_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]
+    arrests = [_simulated_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]
     parts = {
         "lattice": _lattice_rows(still_fraction),
         "limit": _critical_rate_strengthenings(),
@@ -238,7 +238,7 @@ def _velocity_map(regime: str, alpha: float) -> pd.DataFrame:
     return rows.assign(regime=regime, rate_strengthening=alpha, level=SHOWN_LEVEL)
 
 
-def _arrest(alpha: float, dx: float) -> pd.DataFrame:
+def _simulated_arrest(alpha: float, dx: float) -> pd.DataFrame:
     """Simulate a rupture without leaf springs, and return its left front and largest velocity.
 
     There is one row for each of TIMES. The column gap has the distance from the left front to
