@@ -131,9 +131,10 @@ def _numbers_for_unit_width(
 def _half_width(crack: ArrestingCrack) -> float:
     """Return the width of the pulse far from the nucleation, at half of its peak velocity.
 
-    The pulse consists of waves that run to the right. Each starts at a position x when a front
-    arrives there. Its slip velocity is half the integral of the pre-stress to the right of x, which
-    is largest where the pre-stress is 0, and half as large at one position on each side.
+    The pulse consists of waves that run to the right. Each wave starts at a position x when a front
+    arrives there. The slip velocity of the wave is half the integral of the pre-stress to the right
+    of x. This velocity is largest if the pre-stress is 0 at x, and half as large at one position on
+    each side.
     """
 
     def excess_over_half_peak(x: float) -> float:

@@ -36,7 +36,8 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     most_blocks = two_way["sliding_at_once"].max()
     most_without_springs = one_way["sliding_at_once"].max()
     is_wide = bool(fewest_blocks > 1.0)
-    # Each boundary condition counts as one run. It is undecided if no rupture becomes a pulse.
+    # Each boundary condition counts as one run. Such a run is undecided if no rupture becomes a
+    # pulse.
     decided = [None if pulses.empty else True for pulses in (two_way, one_way)]
     return Qualitative(
         decided=decided,

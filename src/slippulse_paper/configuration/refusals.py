@@ -60,7 +60,7 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     mapping_path = path if kind == "value_error" else path[:-1]
     is_known_mapping = len(mapping_path) <= len(entry.path)
     if is_known_mapping:
-        # This is None for an error of a single value.
+        # The line is None for an error of a single value.
         line = _mapping_line(problem, config)
         if line is not None:
             return line

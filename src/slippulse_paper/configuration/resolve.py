@@ -26,7 +26,7 @@ SAMPLED_TIMES, SAMPLED_POSITIONS = 241, 801
 FRONT_SPEED_LEVELS = 65
 # Keys that have one value in a scene and a list of values in a simulation.
 LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening", *EXTRA_TERMS)
-# Those keys of a preset that the results of a simulation depend on.
+# Keys of a preset on which the results of a simulation depend.
 NUMERICAL_KEYS = ("dx", "max_step", "order", "promise")
 # Lists of a simulation that may be replaced by their smallest and largest value when simulations
 # are checked: if any value of such a list is refused or expensive, one of these two is, too.
