@@ -480,7 +480,8 @@ class SlowFront:
         The search begins at the last entry, at the position last_entry_x, and goes along the curve
         from right to left. Entries are skipped as long as all of them together move the front by no
         more than the fraction ``negligible`` of the size of the rupture. The front is continued
-        from the last one of them, so that no entry is left out.
+        from the last skipped entry, or from the first entry if none is skipped, so that no entry is
+        left out.
 
         NO_ENTRY is returned if the entries after the skipped ones move the front back, or if all
         further entries are skipped. None is returned if the next wave comes from beyond the left

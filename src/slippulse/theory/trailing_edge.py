@@ -439,7 +439,7 @@ class PartWithEdge(Part):
         for _ in range(MAX_NEWTON_STEPS):
             if not missing.size:
                 break
-            # Velocity and step before are 0 at the first step, which has no secant.
+            # Before the first step, both are 0. This step has no secant.
             velocity_before, step_before = velocity[missing], step[missing]
             velocity[missing] = self.velocity(x[missing], time[missing])
             # In the next steps the acceleration is replaced by the secant, the change of velocity
