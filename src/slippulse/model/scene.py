@@ -168,15 +168,13 @@ class Scene:
     release: str = "total"
     scheme: str = "localised"
     max_step: float = number("largest time step divided by dx", r"\Delta t/\Delta x", 0.2)
-    order: int = number(
-        "order of the Taylor step, or observed order of convergence of a number",
-        "n",
-        4,
-        integer=True,
-    )
+    order: int = number("order of the Taylor series of a time step", "n", 4, integer=True)
     half_lattice: bool = True
     friction_ratio: float = number(
-        "mu_k/(mu_s - mu_k)", r"\mu_k/(\mu_s - \mu_k)", 5.0, at_least=0.0
+        "ratio mu_k/(mu_s - mu_k) of kinetic friction to the drop from static to kinetic friction",
+        r"\mu_k/(\mu_s - \mu_k)",
+        5.0,
+        at_least=0.0,
     )
     resolved_blocks: int = number(
         "number of sliding blocks below which a pulse is flagged",
