@@ -45,8 +45,8 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     if "unit" not in table:
         table["unit"] = ""
     axis_units = _convert_coordinates(table, layer)
-    # The physical quantity, such as "stress", of the number in the column `value` of each row. It
-    # follows from the role or, for other roles, from the column `series`. It is NaN for a
+    # The physical quantity, such as "stress", of the number in the column `value` of each row. The
+    # quantity follows from the role or, for other roles, from the column `series`, and is NaN for a
     # dimensionless number.
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
     # All values of one quantity on the axes get the same unit.

@@ -1,8 +1,9 @@
 """Judge claims about other friction laws, and about the lattice of Burridge and Knopoff.
 
 Each function takes the evidence and the id of its claim, and returns the result. A result with
-``condition=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. Its
-`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+``condition=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 import numpy as np

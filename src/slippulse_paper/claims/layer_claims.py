@@ -4,8 +4,8 @@ The table `layer` has one row for each run, grid and station. A station is a pos
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
 The column part names a group of runs; `studies.layer.table` describes all of them. The part far has
 the same pulses as the part pulse, farther away and on two grids. A function that judges a claim
-takes the evidence and the id of the claim, and returns the result. Its `further` numbers are shown
-in the table of claims, and sentences quote its `template_values`.
+takes the evidence and the id of the claim, and returns the result. The `further` numbers of the
+result are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Callable

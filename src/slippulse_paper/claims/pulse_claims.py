@@ -1,8 +1,9 @@
 """Judge claims about pulses on lattices: equations, uniqueness and stability.
 
 `equation` and `always` judge claims whose rule is in manuscript/claims.yaml. Each other claim has a
-function here, which takes the evidence and the id of the claim, and returns the result. Its
-`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+function here, which takes the evidence and the id of the claim, and returns the result. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,9 +1,10 @@
 """Judge claims about the two panels of the published space-time figure.
 
 Numbers that were read off the figure are called readings. The study `published_figure` fits the
-exact solution to them. A pull is a fitted value minus the reading, divided by the reading error.
-A function that judges a claim takes the evidence and the id of the claim, and returns the result.
-Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+exact solution to them. A pull is a fitted value minus the reading, divided by the reading error. A
+function that judges a claim takes the evidence and the id of the claim, and returns the result. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 import math

@@ -9,7 +9,8 @@ estimated_time, estimated_length : the paper's estimates
 covered : distance that the left front has covered (arrests only)
 
 A function that judges a claim takes the evidence and the id of the claim, and returns the result.
-Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+The `further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,8 +1,8 @@
 """Pre-stress profiles of a configuration.
 
-A profile may name a file. Its points are then read into the configuration. A profile may also have
-a rough background with lists of parameters. It is then expanded into one profile for each
-combination of the parameters. Each expanded profile is converted to a `Prestress`.
+A profile may name a file, whose points are then read into the configuration. A profile may also
+have a rough background with lists of parameters. Such a profile is expanded into one profile for
+each combination of the parameters. Each expanded profile is converted to a `Prestress`.
 """
 
 import json

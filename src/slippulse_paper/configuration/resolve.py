@@ -64,9 +64,9 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "profiles" in given:
         given["profiles"] = without_files(given["profiles"])
     numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
-    # The accuracy that the user requires (promise) can only be kept if the spacing is free. It is
-    # given as dx or as spacing.fixed. A beta other than 0 also fixes it, because another spacing
-    # would change beta/dx.
+    # The accuracy that the user requires (promise) can only be kept if the spacing is free. A
+    # spacing may be given as dx or as spacing.fixed. A beta other than 0 also fixes it, because
+    # another spacing would change beta/dx.
     has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in numerical and has_own_spacing:
         # NaN means that no accuracy is promised.

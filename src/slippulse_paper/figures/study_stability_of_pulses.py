@@ -168,8 +168,8 @@ def _finish_deviation(axes: Axes) -> None:
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the largest velocity as a function of time, with one line for each level.
 
-    A line has the colour of growth, decay or neither. Its level is written at its end, or where it
-    leaves the panel.
+    A line has the colour of growth, decay or neither. The level of a line is written at its end, or
+    where the line leaves the panel.
     """
     # The velocity of a dead pulse is 0, which a logarithmic axis cannot show.
     rows = rows[rows["largest_velocity"] > 0.0]

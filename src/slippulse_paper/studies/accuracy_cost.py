@@ -27,7 +27,7 @@ from slippulse.theory.pulse import steady_pulse
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
 # Pulses under a displacement boundary, one without damping and one with the damping ratio of the
-# paper's figures. Both become steady within the duration.
+# paper's figures. Both pulses become steady within the duration.
 UNIFORM_PRESTRESS = Prestress(0.55, 0.55)
 GAMMA = 0.65
 DAMPING_RATIOS = (0.0, 0.1)

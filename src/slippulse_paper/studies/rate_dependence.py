@@ -37,8 +37,8 @@ LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
 CRITICAL_FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5)
 # Spacing divided by the level, because the pulse width is proportional to the level.
 SPACING_OVER_LEVEL = 0.12
-# Order and largest time step divided by dx. They are so accurate that velocities behind a crack
-# decay until they are as small as rounding errors.
+# Order, and largest time step divided by dx. Both are chosen so accurate that velocities behind a
+# crack decay until they are as small as rounding errors.
 ORDER, MAX_STEP = 8, 0.25
 # The time in which a pulse becomes steady is inversely proportional to v - 1, the excess of the
 # front speed over the wave speed. A run lasts at least as long as MEMORY_TIMES/(v - 1), and at
