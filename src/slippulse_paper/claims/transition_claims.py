@@ -605,7 +605,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative:
     """Judge whether a quantity rises with the pre-stress, among runs that differ in nothing else.
 
-    Each pair of neighbouring levels counts as one run. It is undecided if the change is smaller
+    Each pair of neighbouring levels counts as one run. A pair is undecided if the change is smaller
     than its uncertainty. Values without an uncertainty are exact.
     """
     uncertainty = table.get(f"uncertainty_{quantity}", 0.0)
