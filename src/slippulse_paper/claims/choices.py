@@ -27,7 +27,7 @@ CHOICE_WORDS = {
     "release": "the release rule",
     "damping_ratio": r"the damping ratio $\beta/\Delta x$",
     "nucleation": "the nucleation",
-    "criterion": "the criterion of the transition",
+    "criterion": "the end of the transition",
 }
 
 
