@@ -98,9 +98,9 @@ def test_strong_strengthening_creeps_and_strong_weakening_slips_by_the_whole_dro
         ),
         (
             sp.friction("linear_rate", alpha=-1.2),
-            "'alpha': -1.2}; allowed: laws with which the slip velocity",
+            "'alpha': -1.2}; allowed: laws whose slip velocity",
         ),
-        (sp.friction("linear_rate", alpha=-50.0), "'alpha': -50.0}; allowed: laws with which the"),
+        (sp.friction("linear_rate", alpha=-50.0), "'alpha': -50.0}; allowed: laws whose slip vel"),
     ],
 )
 def test_laws_without_a_pulse_are_refused(law, message):
