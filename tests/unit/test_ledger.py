@@ -642,7 +642,7 @@ def test_a_claim_beyond_the_paper_holds_but_is_not_reproduced(counts, paper, bey
 
 @pytest.mark.parametrize("id", ["symmetric_displacement_pulses", "one_way_pulse_displacement"])
 def test_a_regime_is_judged_in_its_own_prestress_and_by_long_runs(project, id):
-    """Of four runs, one is in the pre-stress of the claim, and two are too short."""
+    """One of four runs is in the pre-stress of the claim, and two are too short."""
     rule = read_entries(project / "manuscript" / "claims.yaml", {})["claims"][id]["rule"]
     runs = pd.DataFrame({"left": [0.3, 0.3, -0.3, -0.3], "right": [0.3, -0.3, 0.3, -0.3]})
     runs = runs.assign(paper_transition_time=4.0, gamma=0.6, duration=[5.0, 9.0, 5.0, 9.0])

@@ -23,12 +23,17 @@ FIELDS = ("slip", "slip_velocity", "slip_acceleration")
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return slip, velocity and acceleration of each pulse, as functions of the position x.
 
-    The columns simulation and run name the pulse.
+    The columns simulation and run name the pulse. Runs in a pre-stress without an exact steady
+    pulse have no rows.
     """
     parts = []
     for name, sweep in settings["sweeps"].items():
         for number, run in enumerate(runs(sweep)):
-            rows = stress_profile(run) if run.boundary == "stress" else displacement_profile(run)
+            profile = stress_profile if run.boundary == "stress" else displacement_profile
+            try:
+                rows = profile(run)
+            except ValueError:
+                continue
             parts.append(rows.assign(simulation=name, run=number))
     return pd.concat(parts, ignore_index=True)
 
