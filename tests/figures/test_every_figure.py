@@ -14,10 +14,13 @@ from matplotlib.legend import Legend
 from matplotlib.path import Path as Outline
 from matplotlib.text import Text
 from PIL import Image
+from selection import small_sweep
 
 from slippulse.measurement.regime import REGIMES
 from slippulse.plotting.style import PAGE_WIDTH, colour_scale, save_figure
+from slippulse_paper.configuration.runs import runs
 from slippulse_paper.figures import fig02_phase_diagram as phases
+from slippulse_paper.studies import pulse_profiles
 
 MODULES = Path(__file__).parents[2] / "src/slippulse_paper/figures"
 NAMES = sorted(path.stem for path in (*MODULES.glob("fig*.py"), *MODULES.glob("study*.py")))
@@ -301,3 +304,10 @@ def test_a_collapse_without_any_transition_says_so(draw, name):
     assert [text.get_text() for text in figure.axes[0].texts] == [
         r"no run reaches $L_\text{trans}$"
     ]
+
+
+def test_runs_without_an_exact_steady_pulse_are_left_out(shipped):
+    sweep = small_sweep(shipped, "steady_displacement") | {"left": [-0.2, 0.3]}
+    profiles = pulse_profiles.table({}, {}, {"sweeps": {"steady_displacement": sweep}})
+    expected = [number for number, run in enumerate(runs(sweep)) if run.prestress.left > 0.0]
+    assert [*profiles["run"].unique()] == expected

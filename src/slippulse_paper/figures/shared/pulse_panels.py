@@ -64,6 +64,8 @@ def pulse_table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> 
     parts = []
     for name, sweep in data.items():
         runs = tables[name]
+        # Only runs with an exact pulse are drawn.
+        runs = runs[[(name, number) in exact_profiles.groups for number in runs.index]]
         # All runs of a sweep have the same boundary condition.
         boundary = str(runs["boundary"].iloc[0])
         drawn_levels = spread_values(runs["left"], LEVEL_COUNT[boundary])
