@@ -10,6 +10,7 @@ import xarray as xr
 
 from ..data.points import over_points, runs_in
 from ..data.sweep_views import is_sweep
+from ..measurement.nucleation import positions_from_zero, seen_from_nucleation
 from ..measurement.transition import first_stick
 from ..model.checks import check_that
 from ..model.layer_units import layer_of
@@ -125,7 +126,8 @@ def _measure_in_model_units(run: xr.Dataset, **settings: Any) -> dict[str, Any]:
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
         # The paper defines no transition for two different levels, so that `measured_row` has none,
         # unless the pre-stress is a table of points. Here the first stick counts as the transition.
-        numbers |= first_stick(run)
+        moved_run = seen_from_nucleation(run)
+        numbers |= positions_from_zero(first_stick(moved_run), moved_run)
     has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:
         # The two outermost fronts then belong to different ruptures.
