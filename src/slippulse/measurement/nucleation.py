@@ -26,7 +26,7 @@ def nucleation_position(x: np.ndarray, prestress: np.ndarray, release_time: np.n
     """Return the position at which a rupture starts.
 
     It is 0 if the rupture starts at x = 0, if it starts at several places, or if nothing moves.
-    Otherwise it is the position of the middle block at which the pre-stress reaches 1.
+    Otherwise it is the position with the highest pre-stress, or the middle of such positions.
 
     x, prestress, release_time : arrays with one value for each block
     """
@@ -41,8 +41,12 @@ def nucleation_position(x: np.ndarray, prestress: np.ndarray, release_time: np.n
     starts_at_several_places = not starts[first : last + 1].all()
     if starts_at_several_places or x[first] <= 0.0 <= x[last]:
         return 0.0
-    # If there are two middle blocks, the one nearer to x = 0 is taken.
-    middle = (first + last) // 2 if x[first] > 0.0 else (first + last + 1) // 2
+    highest_blocks = first + np.flatnonzero(
+        prestress[first : last + 1] == np.max(prestress[first : last + 1])
+    )
+    # If there are two blocks in the middle, the one nearer to x = 0 is taken.
+    ends = highest_blocks[0] + highest_blocks[-1]
+    middle = ends // 2 if x[first] > 0.0 else (ends + 1) // 2
     return float(x[middle])
 
 

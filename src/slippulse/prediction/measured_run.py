@@ -74,6 +74,8 @@ def measure(run: xr.Dataset) -> Any:
     Source: sections III B and III C of the paper for the transition. Under a displacement boundary
     T_trans is the time of the first stick. Under a stress boundary it is the time at which the left
     front has covered 95 % of ``|x_minus|``. L_trans is the distance between both fronts at T_trans.
+    If the rupture starts at one place that is not x = 0, "left" and "right" are the sides of this
+    place, and ``|x_minus|`` is the distance from it.
 
     Examples
     --------

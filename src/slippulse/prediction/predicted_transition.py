@@ -7,6 +7,7 @@ place when the left front has covered a given fraction of its way to the balance
 import math
 from functools import cache, partial
 
+import numpy as np
 import pandas as pd
 
 from ..model.balance import integral, prestress_balance_position
@@ -89,14 +90,21 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
 
 
 def _nucleation_position(profile: Prestress) -> float:
-    """Return the middle of the nucleation; 0 if it contains x = 0, or if there are several."""
+    """Return the position of the nucleation; 0 if it contains x = 0, or if there are several.
+
+    It is the position with the highest pre-stress, or the middle of such positions.
+    """
     if profile(0.0) >= 1.0:
         return 0.0
     intervals = nucleation_intervals(profile)
     if len(intervals) != 1:
         return 0.0
     ((left, right),) = intervals
-    return 0.5 * (left + right)
+    candidates = [centre for centre, _ in profile.gaussians] + [x for x, _ in profile.points]
+    inside = np.array([x for x in candidates if left <= x <= right] or [left, right])
+    prestress = profile(inside)
+    highest = inside[prestress == prestress.max()]
+    return float(0.5 * (highest.min() + highest.max()))
 
 
 @cache
