@@ -344,11 +344,10 @@ def test_a_rupture_that_starts_elsewhere_has_the_same_numbers(scheme, gamma, lev
     expected, moved = rows
     has_transition = gamma > 0.0 or levels[1] == 0.0
     assert np.isfinite(moved["transition_length"]) == has_transition
-    for name, value in expected.items():
-        if name in ("first_stick_position", "pulse_front", "front_intercept_right"):
-            expected[name] = value + shift
-        elif name.startswith("trailing_edge"):
-            expected[name] = value + shift
+    positions = {"first_stick_position", "pulse_front", "front_intercept_right"}
+    positions |= {name for name in expected if name.startswith("trailing_edge")}
+    for name in positions & expected.keys():
+        expected[name] += shift
     expected["front_intercept_left"] -= shift
     # Sums of rounding errors, and of the waves of the lattice.
     rounded_numbers = {"energy_residual", "lattice_noise"}
@@ -399,3 +398,11 @@ def test_a_level_that_is_almost_0_can_be_measured():
     numbers = sp.measure(simulate(scene))
     assert np.isnan(numbers["pulse_shape_deviation"])
     assert numbers["transition_time"] > 0.0
+
+
+@pytest.mark.parametrize(("times", "positions"), [([], [-1.0, 1.0]), ([1.0, 2.0], [])])
+def test_a_run_without_a_sampled_time_or_position_is_measured(times, positions):
+    scene = Scene("displacement", Prestress(0.5, 0.5), 6.0, 0.1, gamma=1.0)
+    expected = sp.measure(simulate(scene))
+    numbers = sp.measure(simulate(scene, Samples(times, positions)))
+    assert numbers == pytest.approx(expected, nan_ok=True)

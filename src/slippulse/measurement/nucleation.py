@@ -60,8 +60,8 @@ def seen_from_nucleation(run: AnyRun) -> AnyRun:
     position = nucleation_position(*fields)
     if position == 0.0:
         return run
-    names = run if isinstance(run, Recorded) else run.variables
-    arrays = {str(name): np.asarray(run[name]) for name in names}
+    names = [*map(str, run if isinstance(run, Recorded) else run.variables)]
+    arrays = {name: np.asarray(run[name]) for name in names}
     arrays |= {name: arrays[name] - position for name in POSITION_ARRAYS if name in arrays}
     attributes = dict(run.attrs)
     for name in POSITION_ATTRIBUTES:

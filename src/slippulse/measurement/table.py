@@ -98,7 +98,8 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
             "sliding_at_once": sliding_at_once(run),
         }
     # The regime, which needs samples.
-    if "sample_velocity" in run and run["sample_position"].size > 1:
+    has_samples = "sample_velocity" in run and np.size(run["sample_velocity"]) > 0
+    if has_samples and run["sample_position"].size > 1:
         row |= classify_regime(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
             # Changes of the pulse where the pre-stress is constant, far from the nucleation.

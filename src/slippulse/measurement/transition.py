@@ -60,7 +60,7 @@ def slip_time(run: AnyRun, slip: float) -> float:
 
     NaN if it never does, or already at the first sample, or if the run has no samples.
     """
-    if "sample_slip" not in run:
+    if "sample_slip" not in run or np.size(run["sample_slip"]) == 0:
         return np.nan
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
     slips, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])

@@ -201,7 +201,7 @@ def _leftmost_nucleation(prestress: Prestress) -> float:
 
     If a Gaussian at x = 0 has the peak 1 or more, the rupture starts there. Otherwise it starts at
     the points and at the centres of bumps and of this Gaussian where the pre-stress reaches 1 or,
-    if it reaches 1 nowhere, where it is largest. If there are no points and no bumps, 0 is returned.
+    if it reaches 1 nowhere, where it is largest. Without points and bumps, 0 is returned.
     """
     has_gaussian_nucleation = prestress.width is not None and prestress.peak >= 1.0
     if has_gaussian_nucleation or not (prestress.points or prestress.bumps):

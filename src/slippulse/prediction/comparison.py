@@ -71,7 +71,7 @@ def _paper_transition(run: AnyRun) -> tuple[float, float]:
     if used_extra_terms(run.attrs):
         return math.nan, math.nan
     if run.attrs["boundary"] == "stress":
-        # The paper's fronts start at x = 0. If they start elsewhere, the distance to x_minus differs.
+        # The fronts of the paper start at x = 0. Those of this run may start elsewhere.
         balance_position = prestress_balance_position(prestress_from(run.attrs))
         distance = abs(balance_position - position_of_nucleation(run))
         return distance, 2.0 * distance
@@ -155,7 +155,8 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None 
     has_paper_pulse = run.attrs["boundary"] == "displacement" and not used_extra_terms(run.attrs)
     if not has_paper_pulse or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
-    # Theory has no pulse at a level so close to 0 that its front is as fast as the waves, to rounding.
+    # At a level below about 1e-8, the front is as fast as the waves, to rounding. Theory then has no
+    # pulse.
     paper = value_or(lambda: paper_pulse(tau, run.attrs["gamma"]), None)
     if paper is None:
         return np.nan
