@@ -155,7 +155,7 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None 
     has_paper_pulse = run.attrs["boundary"] == "displacement" and not used_extra_terms(run.attrs)
     if not has_paper_pulse or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
-    # At a level below about 1e-8, the front is as fast as the waves, to rounding. Theory then has no
+    # At levels below about 1e-8, fronts are as fast as the waves, to rounding. Theory then has no
     # pulse.
     paper = value_or(lambda: paper_pulse(tau, run.attrs["gamma"]), None)
     if paper is None:
