@@ -185,5 +185,5 @@ def test_stick_times_that_are_only_rounding_are_refused():
     points[0], points[2] = (-4.8, low), (-2.0, zero)
     prestress = Prestress(low, low, width=None, points=tuple(points))
     rupture = Rupture(prestress, 0.0, 0.1, "total", 25.0)
-    with pytest.raises(ValueError, match=r"prestress: stick times that need more than \d+ "):
+    with pytest.raises(ValueError, match=r"prestress: the stick times need more than \d+ "):
         rupture.stick_time(1.0)

@@ -90,8 +90,11 @@ for name in LATTICES:
 SCENES["max_step: 0.2; allowed: <= "] = {"scheme": "fixed_step", "beta": 1e200}
 LAWS = {
     "law: 'velocity'; allowed: coulomb, linear_rate": ("velocity", {}),
-    "alpha: 0.1; allowed: law 'coulomb' with nothing": ("coulomb", {"alpha": 0.1}),
-    "nucleation: missing; allowed: law 'slip_weakening' with": ("slip_weakening", {"d_c": 0.1}),
+    "alpha: 0.1; allowed: no parameter with law 'coulomb'": ("coulomb", {"alpha": 0.1}),
+    "nucleation: missing; allowed: d_c, nucleation with law 'slip_weakening'": (
+        "slip_weakening",
+        {"d_c": 0.1},
+    ),
     "d_c: 0.0; allowed: a finite number": ("slip_weakening", {"d_c": 0.0, "nucleation": 1.0}),
     "slope: -1.0; allowed: a finite number": ("rate_weakening", {"slope": -1.0, "limit": 1.0}),
     "alpha: nan; allowed: a finite number": ("linear_rate", {"alpha": math.nan}),
@@ -150,7 +153,10 @@ SAMPLES = {
     "samples.times: decreasing or negative; allowed: increasing": ([0.0, 2.0, 1.0], [0.0]),
     "decreasing or negative; allowed: increasing times >= 0": ([-0.1, 1.0], [0.0]),
     "samples.times: nan; allowed: a finite number": ([0.0, math.nan], [0.0]),
-    "samples: times and positions; allowed: one-dimensional arrays": ([0.0, 1.0], 0.0),
+    "samples: times or positions are not one-dimensional; allowed: 1-d arrays": (
+        [0.0, 1.0],
+        0.0,
+    ),
 }
 
 recorded_sweep = lambda name: sp.run_sweep([TINY], record=(name,))
@@ -182,8 +188,8 @@ CALLS = [
     ("index: 2; allowed: a whole number and >= 0 and <= 1", sp.point, SWEEP, 2),
     ("allowed: a Dataset that run_sweep returned", sp.point, sp.simulate(EXACT), 0),
     ("sweep: 'x.nc'; allowed: a Dataset", sp.point, "x.nc", 0),
-    ("allowed: numbers of blocks that, from row_start on", sp.point, LONGER, 0),
-    ("allowed: numbers of blocks that, from row_start on", sp.point, SWEEP.drop_vars("x"), 0),
+    ("allowed: numbers of blocks that fit into x", sp.point, LONGER, 0),
+    ("allowed: numbers of blocks that fit into x", sp.point, SWEEP.drop_vars("x"), 0),
     ("run: a sweep; allowed: one run of the sweep, such as point(sweep, 0)", sp.plot, SWEEP),
     (
         "run: a sweep; allowed: one run of the sweep",
@@ -208,7 +214,13 @@ CALLS = [
     (SLOW, theory.lattice_front_speed, 0.3, 1.0, 1.0, 0.1),
     ("tau0: 0.33; allowed: > 0.336545, so that", theory.lattice_front_speed, 0.33, 0.5, 1.0, 3.0),
     ("tau0: 0.5; allowed: > 1", theory.lattice_front_speed, 0.5, 1e300, 1e300),
-    ("tau0: 0.3; allowed: a pre-stress at which", theory.continuum_front_speed, 0.3, 2.0, 0.3),
+    (
+        "tau0: 0.3; allowed: a higher pre-stress, at which",
+        theory.continuum_front_speed,
+        0.3,
+        2.0,
+        0.3,
+    ),
     ("beta: 0.0; allowed", theory.continuum_front_speed, 0.3, 2.0, 0.0),
     ("position: -100; allowed", CRACK.time_at, -100),
     ("fraction: 1.0; allowed", CRACK.transition, 1.0),
@@ -221,7 +233,7 @@ CALLS = [
     ("tau_barrier: 0.5; allowed", theory.barrier_depth_estimate, 0.5, 0.5, 0.65),
     ("tau0: 0.0; allowed", theory.uniform_transition_time, 0.0, 0.65),
     ("weakening: 0.4, at tau0 = 0.5", theory.weakening_pulse, 0.5, 2 / 3, 0.05, 0.4),
-    ("take at most 20000 panels", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
+    ("at most 20000 integration panels", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
     ("prestress: changes its sign 3 times", theory.ArrestingCrack, SECOND_BARRIER, 0.1),
     ("prestress: not symmetric, or", theory.exact_transition_displacement, BARRIERS, 0.65, 0.1),
 ]

@@ -79,17 +79,19 @@ def test_a_run_exceeds_its_cost_bound_at_most_by_a_small_factor(change):
 
 def test_a_run_that_would_not_end_is_refused_before_it_starts():
     profile = sp.Prestress(0.6, 0.6)
-    allowed = "allowed: 4e.[0-9]+; use run_sweep, which takes any scene"
+    allowed = "allowed: 4e.[0-9]+; use run_sweep, which has no limit of cost"
     with pytest.raises(ValueError, match=rf"^cost: up to 8.*e.22 block updates; {allowed}$"):
         sp.simulate(sp.Scene("stress", profile, 1e9, dx=0.01))
     samples = sp.Samples(np.linspace(0.0, 1.0, 30_000), np.linspace(-1.0, 1.0, 30_000))
     with pytest.raises(ValueError, match=f"^cost: up to .* bytes; {allowed}$"):
         sp.simulate(sp.Scene("stress", profile, 1.0, dx=0.01), samples)
     # The exact solution has a limit of its own.
-    with pytest.raises(ValueError, match="allowed: paths that take at most 20000 panels"):
+    with pytest.raises(
+        ValueError, match="allowed: distances with at most 20000 integration panels"
+    ):
         sp.theory.Rupture(profile, 0.65, duration=1e6)
     rupture = sp.theory.Rupture(sp.Prestress(0.6, 0.5), 0.65, 0.1, duration=5e4)
-    refusal = "^duration: 50000, for which the slip velocity must be evaluated at 1.3e.10 points "
+    refusal = "^duration: 50000; .* the slip velocity must be evaluated at 1.3e.10 points"
     with pytest.raises(ValueError, match=refusal):
         _ = rupture.first_stick
 

@@ -77,7 +77,7 @@ def test_a_cache_that_cannot_be_written_is_a_warning(tmp_path, monkeypatch):
     assert folder == str(tmp_path / "solver/__pycache__" / jit.cache_folder().name)
     assert folder in str(warned[0].message)
     monkeypatch.setattr(jit, "SOLVER_FOLDER", tmp_path / "file")
-    with pytest.warns(UserWarning, match="each process compiles its own"):
+    with pytest.warns(UserWarning, match="each process compiles them again"):
         assert jit.writable_cache() == ""
 
 

@@ -223,7 +223,7 @@ UNRESOLVED = {
     "a start between blocks": (
         [-9.0, 3.02, 9.0],
         [0.4, 1.0, 0.2],
-        "1 at x: 3.02; allowed: a value",
+        "the stress 1 releases no block at x: 3.02; allowed: a value",
     ),
 }
 

@@ -116,9 +116,9 @@ def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, stu
     pd.testing.assert_series_equal(generous["kept"] == "true", strict["kept"] == "false")
     assert (generous["promised"].notna() == (generous["kept"] != "")).all()
     pd.testing.assert_frame_equal(generous[study.columns], study)
-    assert summarise_promises(generous, 10.0) == "accuracy 10 kept by 2 of 2 runs"
+    assert summarise_promises(generous, 10.0) == "accuracy 10: 2 of 2 runs keep it"
     assert summarise_promises(strict, 1e-9).startswith(
-        "accuracy 1e-09 kept by 0 of 2 runs; missed by 0 ("
+        "accuracy 1e-09: 0 of 2 runs keep it; missed by run 0 ("
     )
     relative = (study["uncertainty"] / study["value"].abs())[generous["kept"] != ""]
     middle = float(relative.median())
@@ -137,7 +137,7 @@ def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, stu
     study = judge_promises(study, tables[0], 10.0, FRACTION)
     row = study[(study["quantity"] == "front_speed_right") & (study["point"] == 0)]
     assert list(row["kept"]) == ["false"]
-    assert "missed by 0 (front_speed_right inf)" in summarise_promises(study, 10.0)
+    assert "missed by run 0 (error of front_speed_right: inf)" in summarise_promises(study, 10.0)
 
 
 def test_the_numbers_and_the_page_of_a_scene_carry_the_verdict(tables, study, tmp_path):

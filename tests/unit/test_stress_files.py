@@ -74,13 +74,13 @@ BAD = {
     "row 2: tau = '0,5'": "x;tau\n0;0,5\n1;0,5\n",
     "row 3: tau = 'nan'": "x,tau\n0,.1\n1,nan\n",
     "row 3: x = '1e999'": "x,tau\n0,.1\n1e999,.2\n",
-    "row 3: 1 values": "x,tau\n0,.1\n1\n",
+    "row 3: a value is missing": "x,tau\n0,.1\n1\n",
     "no column tau or prestress": "x,y\n0,.1\n1,.2\n",
     "unit 'm' of x; allowed: 1, -, H": "x,tau\nm,Pa\n0,.1\n1,.2\n",
     "last prestress 1.2; allowed: < 1": "x,tau\n0,.1\n1,1.2\n",
     "not text (byte 8); allowed: CSV in UTF-8": b"x,tau\n0,\xff\n",
     "more than 20000000 bytes; allowed: at most 100000 rows": b"1,0\n" * 10_000_000,
-    "row 100003: one too many": "x,tau\nH,S\n" + "0,0\n" * 100_001,
+    "row 100003: one row too many": "x,tau\nH,S\n" + "0,0\n" * 100_001,
 }
 
 

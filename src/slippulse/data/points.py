@@ -92,7 +92,7 @@ def _starts_of_runs(
         # If runs were selected from a sweep, the arrays still contain the blocks of all its runs.
         starts = recorded_starts
         is_consistent = np.all(sizes >= 0) and np.all(starts + sizes <= number_of_blocks)
-        allowed = "numbers of blocks that, from row_start on, fit into x"
+        allowed = "numbers of blocks that fit into x, counted from row_start on"
     check_that(bool(is_consistent), "row_size", sizes.tolist(), allowed)
     return starts
 

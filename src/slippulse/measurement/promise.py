@@ -157,14 +157,14 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
     missed = study[study["kept"] == "false"]
     covered_count = study.loc[study["kept"] != "", "point"].nunique()
     kept_count = covered_count - missed["point"].nunique()
-    text = f"accuracy {promise:g} kept by {kept_count} of {covered_count} runs"
+    text = f"accuracy {promise:g}: {kept_count} of {covered_count} runs keep it"
     relative = (missed["uncertainty"] / missed["value"].abs()).fillna(np.inf)
     misses = []
     for point, uncertainties in relative.groupby(missed["point"]):
         quantity = missed.loc[uncertainties.idxmax(), "quantity"]
-        misses.append(f"{point} ({quantity} {uncertainties.max():.1e})")
+        misses.append(f"{point} (error of {quantity}: {uncertainties.max():.1e})")
     if misses:
-        text += f"; missed by {', '.join(misses[:MAX_REPORTED_MISSES])}"
+        text += f"; missed by run {', '.join(misses[:MAX_REPORTED_MISSES])}"
     if len(misses) > MAX_REPORTED_MISSES:
         text += " ..."
     uncovered_count = study["point"].nunique() - covered_count

@@ -129,7 +129,7 @@ def _balance_position(prestress: Prestress) -> float:
     # to infinity end there.
     distance = _distance_of_constant_levels(prestress)
     right = float(prestress.level(distance))
-    allowed = "0, since otherwise the balance integral is not finite"
+    allowed = "0, since otherwise the integral of the pre-stress up to infinity is not finite"
     check_that(right == 0.0, "prestress.right", right, allowed)
     if prestress.points or prestress.steps or prestress.bumps:
         return _nearest_balance(prestress, distance)

@@ -69,7 +69,7 @@ def friction(law: str, **parameters: float) -> Friction:
     missing_or_unknown = set(needed).symmetric_difference(parameters)
     for name in missing_or_unknown:
         value = short_repr(parameters[name]) if name in parameters else "missing"
-        allowed = f"law {law!r} with {', '.join(needed) or 'nothing'}"
+        allowed = f"{', '.join(needed) or 'no parameter'} with law {law!r}"
         raise ValueError(f"{name}: {value}; allowed: {allowed}")
     return law_class(**parameters)
 

@@ -77,7 +77,9 @@ class LayerMaterial:
             are_usable = all(math.isfinite(scale) and scale > 0.0 for scale in self.scales)
         except ArithmeticError:
             are_usable = False
-        check_that(are_usable, "layer", self.mapping(), "numbers near those of a material")
+        check_that(
+            are_usable, "layer", self.mapping(), "numbers of a size that real materials have"
+        )
 
     def _convert_lame_or_poisson(self) -> None:
         """Convert ``lame_parameter`` or ``poisson_ratio`` to a float, whichever is given.

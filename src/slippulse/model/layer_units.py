@@ -142,7 +142,7 @@ class Layer(LayerMaterial):
         >>> scene = block.scene((x, stress), 60e-6, 2e-4, damping_ratio=0.1)
         """
         for name in DERIVED_PARAMETERS:
-            allowed = "none, since the layer or the arguments in SI units determine its value"
+            allowed = "no value, since the layer or the arguments in SI units determine it"
             check_that(name not in parameters, name, parameters.get(name), allowed)
         check_number("dx_in_metres", dx_in_metres, above=0.0)
         check_number("duration_in_seconds", duration_in_seconds, above=0.0)
@@ -360,7 +360,7 @@ class Layer(LayerMaterial):
         """
         _check_run(run)
         if "layer" in run.attrs:
-            raise ValueError("run: in SI units; allowed: a run without units")
+            raise ValueError("run: already in SI units; allowed: a run in the units of the model")
         self._check_same_layer(run.attrs)
         data = converted_run(run, self.convert_to_si)
         units = {name: UNITS[QUANTITIES[name]] for name in run.attrs if name in QUANTITIES}
@@ -391,7 +391,7 @@ class Layer(LayerMaterial):
         _check_run(run)
         run_layer = layer_of(run.attrs)
         if run_layer is None:
-            raise ValueError("run: without units; allowed: a run that to_si returned")
+            raise ValueError("run: not in SI units; allowed: a run that to_si returned")
         for field in fields(self):
             value, allowed = getattr(self, field.name), getattr(run_layer, field.name)
             allowed_text = f"{allowed!r}, as in the layer that converted the run"
@@ -443,7 +443,7 @@ def _check_run(run: Any) -> None:
     has_fields = hasattr(run, "variables") and "x" in run.variables and "end_time" in run.attrs
     # The Dataset of a sweep has further variables.
     is_run = has_fields and set(run.variables) <= set(VARIABLES)
-    allowed = "a Dataset that simulate returned; point takes one run out of a sweep"
+    allowed = "a Dataset that simulate returned; the function point takes one run out of a sweep"
     check_that(is_run, "run", type(run).__name__, allowed)
 
 

@@ -119,7 +119,7 @@ class Prestress(ExplainsRemovedNames):
         # A step at x = 0 is the difference of left and right.
         positions = [position for position, _ in self.steps]
         are_distinct = 0.0 not in positions and len({*positions}) == len(positions)
-        allowed = "different positions, none of them 0 (see left, right)"
+        allowed = "different positions, none of them 0; left and right give the step at 0"
         check_that(are_distinct, "prestress.steps", positions, allowed)
         is_peak_allowed = self.width is not None or self.peak == 1.0
         allowed = "1 unless a width is given: without a width there is no Gaussian"
@@ -129,7 +129,7 @@ class Prestress(ExplainsRemovedNames):
 
     def _check_points(self) -> None:
         """Raise ValueError if the points are not in order, or do not fit the other arguments."""
-        check_that(not self.steps, "prestress.steps", self.steps, "none with points")
+        check_that(not self.steps, "prestress.steps", self.steps, "no steps together with points")
         x, tau = self.point_arrays
         check_order(x)
         # The pre-stress is constant beyond the outermost points.
@@ -179,7 +179,7 @@ class Prestress(ExplainsRemovedNames):
         """
         positions, values = convert_column("x", x), convert_column("tau", tau)
         size = len(positions)
-        allowed = f"{size} values, as many as of x"
+        allowed = f"{size} values, one for each x"
         check_that(size == len(values), "prestress.points", len(values), allowed)
         return cls(
             left=values[0],

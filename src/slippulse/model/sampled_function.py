@@ -56,7 +56,7 @@ def sample_function(
             positions.size <= MAX_TABLE_POINTS,
             "tolerance",
             tolerance,
-            f"a tolerance that {MAX_TABLE_POINTS} samples can meet",
+            f"a larger tolerance, which {MAX_TABLE_POINTS} samples can meet",
         )
         # The parts of the divided intervals are tested next.
         ends = np.column_stack([left, test_positions, right])[is_divided]

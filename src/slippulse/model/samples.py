@@ -45,7 +45,9 @@ class Samples:
             copy.setflags(write=False)
             object.__setattr__(self, name, copy)
         if self.times.ndim != 1 or self.positions.ndim != 1:
-            raise ValueError("samples: times and positions; allowed: one-dimensional arrays")
+            raise ValueError(
+                "samples: times or positions are not one-dimensional; allowed: 1-d arrays"
+            )
         if np.any(np.diff(self.times) < 0.0) or np.any(self.times < 0.0):
             allowed = "increasing times >= 0"
             raise ValueError(f"samples.times: decreasing or negative; allowed: {allowed}")

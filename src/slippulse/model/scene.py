@@ -167,15 +167,13 @@ class Scene:
     release: str = "total"
     scheme: str = "localised"
     max_step: float = number("largest time step divided by dx", r"\Delta t/\Delta x", 0.2)
-    order: int = number(
-        "order of the Taylor step, or observed order of convergence of a number",
-        "n",
-        4,
-        integer=True,
-    )
+    order: int = number("order of the Taylor series of a time step", "n", 4, integer=True)
     half_lattice: bool = True
     friction_ratio: float = number(
-        "mu_k/(mu_s - mu_k)", r"\mu_k/(\mu_s - \mu_k)", 5.0, at_least=0.0
+        "ratio mu_k/(mu_s - mu_k) of kinetic friction to the drop from static to kinetic friction",
+        r"\mu_k/(\mu_s - \mu_k)",
+        5.0,
+        at_least=0.0,
     )
     resolved_blocks: int = number(
         "number of sliding blocks below which a pulse is flagged",
@@ -223,7 +221,7 @@ class Scene:
         # The width is None if there is no Gaussian at x = 0.
         peak_width = self.prestress.width
         is_resolved = peak_width is None or peak_width >= self.dx
-        allowed = f">= dx = {self.dx:g}, so that blocks resolve it"
+        allowed = f">= dx = {self.dx:g}, so that the blocks resolve the Gaussian"
         check_that(is_resolved, "prestress.width", peak_width, allowed)
         # At its start, the lattice already extends over all bumps and over all points that reach 1.
         # If they are far away, this needs too much memory.
@@ -246,7 +244,7 @@ class Scene:
         if self.boundary == "displacement":
             check_number("gamma", self.gamma, above=0.0)
         else:
-            allowed = "0 or left out under boundary 'stress' (no leaf springs)"
+            allowed = "0 or left out under boundary 'stress', which has no leaf springs"
             is_zero = isinstance(self.gamma, Real) and self.gamma == 0.0
             check_that(is_zero, "gamma", self.gamma, allowed)
         check_runaway(self.gamma, self.friction.traits.linear_rate, "friction.alpha")
@@ -260,7 +258,7 @@ class Scene:
         damping_ratio, stiffness, _ = self.ratios
         ratios = f"beta/dx = {damping_ratio:.4g}, stiffness dx^2 = {stiffness:.4g}"
         if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and largest > 0.0):
-            allowed = "numbers for which a stable step can be computed"
+            allowed = "numbers from which a stable time step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
         # Presets compute max_step from the stable step. If that overflows, max_step is 0, and the
         # message above names the cause. This check therefore comes after it.
@@ -435,4 +433,4 @@ def check_run_attributes(attributes: Mapping) -> None:
     Scene.from_attributes(attributes)
     for name in REQUIRED_RESULTS:
         value = attributes.get(name)
-        check_that(isinstance(value, Real), name, value, "a number, as simulate returns it")
+        check_that(isinstance(value, Real), name, value, "a number, which simulate records")

@@ -142,7 +142,7 @@ def _csv_rows(content: bytes) -> list[Row]:
     if len(numbered_lines) > max_lines:
         number, _ = numbered_lines[max_lines]
         raise StressFileError(
-            f"row {number}: one too many; allowed: at most {MAX_TABLE_POINTS} rows"
+            f"row {number}: one row too many; allowed: at most {MAX_TABLE_POINTS} rows"
         )
     # The delimiter is None if spaces separate the cells.
     _, first_line = numbered_lines[0]
@@ -174,9 +174,9 @@ def _find_column(
         if name.lower() in lower_case:
             return lower_case.index(name.lower())
     present = ", ".join(short_repr(cell) for cell in header[:8])
-    allowed = f"a column of that name, or {key} = the name of a column"
+    allowed = f"a column of that name, or {key} = the name of another column"
     raise StressFileError(
-        f"no column {' or '.join(names)} for {key} among {present}; allowed: {allowed}"
+        f"no column {' or '.join(names)}, but the columns {present}; allowed: {allowed}"
     )
 
 
@@ -193,7 +193,7 @@ def _cell(row: Row, column: int) -> str:
     """Return the cell of a row in a column, or raise StressFileError if the row is too short."""
     if column >= len(row.cells):
         allowed = "a value in each column"
-        raise StressFileError(f"row {row.number}: {len(row.cells)} values; allowed: {allowed}")
+        raise StressFileError(f"row {row.number}: a value is missing; allowed: {allowed}")
     return row.cells[column]
 
 
@@ -257,7 +257,7 @@ def _read_netcdf(content: bytes, x: str | None, prestress: str | None) -> Stress
     positions, values = _netcdf_numbers(data, x_name), _netcdf_numbers(data, tau_name)
     if len(positions) != len(values):
         sizes = f"{len(positions)} values of {x_name}, {len(values)} of {tau_name}"
-        raise StressFileError(f"{sizes}; allowed: the same number of values of both")
+        raise StressFileError(f"{sizes}; allowed: equal numbers of values")
     _check_rows(range(1, len(values) + 1), positions)
     units = [str(data[name].attrs.get("units", "")) for name in (x_name, tau_name)]
     return StressTable(positions, values, units[0], units[1])
@@ -267,7 +267,7 @@ def _netcdf_numbers(data: "xr.Dataset", name: str) -> list[float]:
     """Return the values of a variable, or raise StressFileError if they are not finite numbers."""
     values = data[name].values
     if values.dtype.kind not in "iuf":
-        raise StressFileError(f"{name}: not numbers; allowed: numbers")
+        raise StressFileError(f"{name}: values that are not numbers; allowed: numbers")
     if values.size > MAX_TABLE_POINTS:
         raise StressFileError(
             f"{values.size} values of {name}; allowed: at most {MAX_TABLE_POINTS}"

@@ -30,10 +30,9 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
     missed_point = index_of_first_true((tau >= 1.0) & ~is_released)
     if missed_point is not None:
-        allowed = f"a value >= 1 also at a block; blocks are at multiples of dx = {dx:g}"
-        raise refusal(
-            f"prestress.points {tau[missed_point]:g} at x", float(x[missed_point]), allowed
-        )
+        allowed = f"a value >= 1 at a block; the blocks are at multiples of dx = {dx:g}"
+        key = f"prestress.points: the stress {tau[missed_point]:g} releases no block at x"
+        raise refusal(key, float(x[missed_point]), allowed)
     # `level` is the table alone, without the nucleation peak. The loss of a point is the amount by
     # which it is above or below all of its three blocks.
     at_blocks = prestress.level(neighbours)

@@ -115,7 +115,7 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
         # An exact solution that is not known everywhere gives the reason.
         if run.attrs.get("limit_reason"):
             _hatch_unknown(map_axes, run, rows_by_role)
-            figure.suptitle(f"hatched: not known, because {run.attrs['limit_reason']}")
+            figure.suptitle(f"hatched: solution not known, because {run.attrs['limit_reason']}")
     else:
         space_time.draw_edges(map_axes, rows_by_role, rows_by_role["end"]["time"].iloc[0])
     if np.isfinite(run["release_time"]).any():

@@ -91,7 +91,7 @@ def measure(run: xr.Dataset) -> Any:
     check_that(isinstance(run, xr.Dataset), "run", run, "a Dataset that simulate returned")
     if "point" in run.dims or "run_flags" in run.variables:
         run = over_points(run)
-        check_that(is_sweep(run), "run", run, "a run, or a sweep with its parameters")
+        check_that(is_sweep(run), "run", run, "a run, or a sweep that contains its parameters")
         has_fronts = {"release_time", "stick_time"} <= set(run)
         check_that(has_fronts, "run", run, "a sweep that was recorded with 'fronts'")
         rows = [_measure_run(recorded.dataset()) for recorded in runs_in(run)]
@@ -153,7 +153,8 @@ def _explain_missing_transition(numbers: Mapping[str, Any], has_several_nucleati
                 " right = 0, without steps, and with a balance position"
             )
         if math.isnan(time):
-            return f"the left front did not cover {MEASURE_SETTINGS['fraction']:.0%} of |x_minus|"
+            fraction = MEASURE_SETTINGS["fraction"]
+            return f"the left front did not cover {fraction:.0%} of the way to the balance position"
     elif max(numbers["left"], numbers["right"]) <= 0.0:
         return "both levels of the pre-stress are 0 or negative, so that no pulse keeps running"
     elif math.isnan(time):

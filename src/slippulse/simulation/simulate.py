@@ -74,7 +74,9 @@ def simulate(
     check_kind("strict", strict, bool)
     _check_sample_times(samples, scene.duration)
     # The message is empty if the run is not too long and does not need too much memory.
-    message = bound_cost(scene, samples).exceeded(remedy="use run_sweep, which takes any scene")
+    message = bound_cost(scene, samples).exceeded(
+        remedy="use run_sweep, which has no limit of cost"
+    )
     # The exact solution itself refuses scenes that are too large, and names the key.
     if message and scene.scheme != "continuum":
         raise ValueError(message)

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from numba.core import event
 
 NOTICE_TEXT = (
-    "slippulse: compiling the kernels of the lattice, which takes about half a minute once;"
-    " later calls load them"
+    "slippulse: compiling the kernels of the lattice takes about half a minute;"
+    " later calls load the compiled kernels"
 )
 PACKAGE_NAME = __name__.partition(".")[0]
 

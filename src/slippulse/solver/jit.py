@@ -70,7 +70,7 @@ def writable_cache() -> str:
         return str(usual)
     substitute = SOLVER_FOLDER / "__pycache__" / usual.name
     is_usable = not _write_problem(substitute)
-    consequence = f"they go to {substitute}" if is_usable else "each process compiles its own"
+    consequence = f"they go to {substitute}" if is_usable else "each process compiles them again"
     remedy = "to avoid this, set SLIPPULSE_CACHE to a folder that can be written"
     cannot_write = f"compiled kernels cannot be written to {usual}: {problem}"
     warnings.warn(f"{cannot_write}; {consequence}; {remedy}", stacklevel=2)

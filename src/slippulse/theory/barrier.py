@@ -77,8 +77,8 @@ def barrier_depth(
     panels, reason = _continue_into_barrier(_panels_before_barrier(tau0, speed), tau_barrier)
     if reason != "stops":
         raise ValueError(
-            f"tau_barrier: {tau_barrier!r}, at which the motion of the front is {reason} for"
-            f" {arguments}; allowed: levels at which the motion is resolved"
+            f"tau_barrier: {tau_barrier!r}, at which the motion of the front is {reason}"
+            f" ({arguments}); allowed: levels at which the motion of the front is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)
 

@@ -165,7 +165,7 @@ def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) 
         refused = f"rate_strengthening: {rate_strengthening!r} at {gamma = :.6g}, {speed = :.6g}"
         allowed = f"less than {critical:.6g} in absolute value (if beta is 0)"
         return f"{refused}; allowed: {allowed}, since otherwise no pulse is steady"
-    allowed = "values at which no number of the pulse is 0 or infinite"
+    allowed = "values at which width, slip and velocities of the pulse are finite and not 0"
     return f"speed: {speed:.6g} at {gamma = :.6g}; allowed: {allowed}"
 
 

@@ -244,11 +244,10 @@ class FastFront:
         """Return the error for a front that needs too many panels over a distance."""
         longest = self.max_panel_length(background) / self.refinement
         return ValueError(
-            f"prestress: level {background.right_value!r} over a distance of {distance:g}, for"
-            f" which the path of the front needs more than {MAX_PANELS} integration panels, each"
-            f" at most {longest:.3g} long (gamma = {self.gamma:g}, damping_ratio ="
-            f" {self.damping_ratio:g});"
-            f" allowed: paths that take at most {MAX_PANELS} panels"
+            f"prestress: level {background.right_value!r} over a distance of {distance:g};"
+            f" allowed: distances with at most {MAX_PANELS} integration panels. Each panel is at"
+            f" most {longest:.3g} long at gamma = {self.gamma:g} and damping_ratio ="
+            f" {self.damping_ratio:g}"
         )
 
 

@@ -152,8 +152,8 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     # This condition is v > 1.
     if not slowing < tau0 / (1.0 - tau0):
         raise ValueError(
-            f"tau0: {tau0!r}; allowed: a pre-stress at which the front is faster than the waves,"
-            f" for gamma = {gamma:g} and beta = {beta:g}"
+            f"tau0: {tau0!r}; allowed: a higher pre-stress, at which the front is faster than"
+            f" the waves, for gamma = {gamma:g} and beta = {beta:g}"
         )
     return float(1.0 / np.sqrt((1.0 - tau0) * (1.0 + slowing)))
 

@@ -261,7 +261,7 @@ def _slowest_weakening_speed(tau0: float, gamma: float, beta: float, weakening: 
         upper *= SPEED_FACTOR
     if not MIN_SPEED < upper < MAX_SPEED:
         values = f"{weakening:.4g}, at tau0 = {tau0:.4g}, gamma = {gamma:.4g}, beta = {beta:.4g}"
-        allowed = f"values with a steady rupture at a speed from {MIN_SPEED} to {MAX_SPEED}"
+        allowed = f"values at which a steady rupture has a speed from {MIN_SPEED} to {MAX_SPEED}"
         raise ValueError(f"weakening: {values}; allowed: {allowed}")
     return root_to_last_bit(sign_of_speed_error, upper / SPEED_FACTOR, upper)
 
@@ -302,7 +302,7 @@ def rate_pulse(
     """
     check_domains(tau0=tau0, gamma=gamma)
     if friction.friction(0.0, 0.0, *friction.kernel_parameters) != 0.0:
-        allowed = "laws that are 0 at rest and depend on slip rate alone"
+        allowed = "laws without friction at rest that depend on slip rate alone"
         raise ValueError(f"friction.law: {short_repr(friction.law)}; allowed: {allowed}")
     v = float(front_speed(tau0, damping_ratio))
     path = _integrate_behind_front(v, tau0=tau0, gamma=gamma, friction=friction)
@@ -310,7 +310,7 @@ def rate_pulse(
     _, states_at_peaks = path.y_events
     if not len(states_at_peaks):
         limit = f"{MAX_HALF_PERIODS:g} half-periods of the leaf springs"
-        allowed = f"laws with which the slip velocity has a peak within {limit}"
+        allowed = f"laws whose slip velocity has a peak within {limit}"
         raise ValueError(f"friction: {short_repr(friction.mapping())}; allowed: {allowed}")
     peak = v * max(float(strain_at_peak) for _, strain_at_peak in states_at_peaks)
     # The status is 1 if the integration ended at a terminal event.
@@ -346,7 +346,7 @@ def _integrate_behind_front(v: float, tau0: float, gamma: float, friction: Frict
         # The evaluations are counted, because a stiff law would take for ever.
         if next(evaluation_numbers) == MAX_EVALUATIONS:
             needed = f"the pulse needs more than {MAX_EVALUATIONS} evaluations of the friction law"
-            allowed = "larger values, or weaker friction"
+            allowed = "a larger gamma, or weaker friction"
             raise ValueError(f"gamma: {gamma!r}, where {needed}; allowed: {allowed}")
         slip, strain = state
         resistance = friction.friction(slip, v * strain, *parameters)

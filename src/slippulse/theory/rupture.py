@@ -425,8 +425,9 @@ class Rupture(ExplainsRemovedNames):
             check_choice("fields", name, FIELDS)
         x, time = as_numbers("positions", positions), as_numbers("times", times)
         if x.ndim != 1 or time.ndim != 1:
-            raise ValueError(f"times, positions: {time.ndim}-d, {x.ndim}-d; allowed: one dimension")
-        check_number("times and positions", x.size * time.size, at_most=MAX_MAP_POINTS)
+            dimensions = f"{time.ndim} and {x.ndim} dimensions"
+            raise ValueError(f"times, positions: {dimensions}; allowed: one dimension each")
+        check_number("number of times and positions", x.size * time.size, at_most=MAX_MAP_POINTS)
         return self._fields_at_points(tuple(fields), x[None, :], time[:, None])
 
     def _fields_at_points(self, fields: tuple[str, ...], x, time) -> dict[str, np.ndarray]:

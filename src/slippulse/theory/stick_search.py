@@ -111,9 +111,9 @@ class StickSearch:
         sample_count = release.size * (longest / self.step + BATCH_SIZE + wave_arrivals.shape[1])
         if sample_count > MAX_SAMPLES:
             raise ValueError(
-                f"duration: {self.until:g}, for which the slip velocity must be evaluated at"
-                f" {sample_count:.2g} points to find the stick times; allowed: a duration for which"
-                f" at most {MAX_SAMPLES:.0e} points are needed"
+                f"duration: {self.until:g}; to find the stick times, the slip velocity must be"
+                f" evaluated at {sample_count:.2g} points; allowed: a shorter duration, with at"
+                f" most {MAX_SAMPLES:.0e} points"
             )
         batch_count = longest // (BATCH_SIZE * self.step) + 1
         steps = self.step * np.arange(1, BATCH_SIZE * batch_count + 1)

@@ -174,9 +174,9 @@ class PartWithEdge(Part):
             knots, left_ends = self._refine(knots, left_ends)
             if knots.x.size > MAX_KNOTS:
                 raise ValueError(
-                    f"prestress: stick times that need more than {MAX_KNOTS} interpolation points,"
+                    f"prestress: the stick times need more than {MAX_KNOTS} interpolation points,"
                     " since some slip velocities are as small as rounding errors;"
-                    " allowed: pre-stress with more regular stick times"
+                    " allowed: a pre-stress with more regular stick times"
                 )
         return knots
 

@@ -35,7 +35,9 @@ def fast_fronts(
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)
     (first_released, last_released), *others = nucleation_intervals(prestress)
     if others or first_released != last_released:
-        raise ValueError("prestress: reaches 1 away from x = 0; allowed: one nucleation point")
+        raise ValueError(
+            "prestress: reaches 1 away from x = 0; allowed: a profile that reaches 1 only at x = 0"
+        )
     start = Point(0.0, 0.0)
     right_front, _ = law.panels_to_right(start, stop=reach, until=np.inf)
     # The left front is computed as the right front of the pre-stress mirrored at x = 0.

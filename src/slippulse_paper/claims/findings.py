@@ -115,6 +115,7 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """Return the best fit to the published figure, as numbers for the text.
 
     release, ratio : release rule and damping ratio of the fit
+    level, gamma : level of the pre-stress and elasticity ratio of the fit
     low, high : ends of the confidence region of the damping ratio at 95 %
     chi_square, degrees : chi-square and degrees of freedom
     difference : chi-square with the other release rule, minus chi-square of the best fit
@@ -127,6 +128,8 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
         "chi_square": best["chi2"],
         "degrees": float(best["dof"]),
         "ratio": best["damping_ratio"],
+        "level": best["tau0"],
+        "gamma": best["gamma"],
         "low": low,
         "high": high,
         "difference": fits["difference"],

@@ -149,9 +149,9 @@ IN_SI = (
 SI_KEYS = {"left": "stress", "right": "stress", "peak": "stress", "width": "length"}
 SI_KEYS |= {"dx": "length", "duration": "time"}
 KEPT = (
-    "recorded data: fronts (release and stick times), fields (slip, slip velocity and slip "
-    "acceleration at the end) and samples (slip and slip velocity at the times and positions under "
-    "`samples`)"
+    "recorded data: `fronts` (release and stick times), `fields` (slip, slip velocity and slip "
+    "acceleration at the end) and `samples` (slip and slip velocity at the times and positions "
+    "under the key `samples`)"
 )
 RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
 
@@ -240,18 +240,20 @@ class Profile(Block):
     )
     bumps: list[Bump] = key("Gaussians that are added to the pre-stress [H, S, H]", [], BUMPS)
     points: list[Step] | None = key(
-        "instead of levels: points of the pre-stress. The pre-stress is linear between the points, "
-        "constant outside, and jumps at a position that appears twice [H, S]",
+        "instead of `left` and `right`: points of the pre-stress. The pre-stress is linear between "
+        "the points, constant outside, and jumps at a position that appears twice [H, S]",
         None,
         POINTS,
     )
     file: str | None = key(
-        "instead of levels: CSV or netCDF file with points of the pre-stress; its path is relative "
-        "to the folder of the overlay",
+        "instead of `left` and `right`: CSV or netCDF file with points of the pre-stress. Its path "
+        "is relative to the folder of the overlay",
         None,
     )
     rough: Rough | None = key(
-        "instead of levels: parameters of a random pre-stress, explained below", None, ROUGH
+        "instead of `left` and `right`: parameters of a random pre-stress, explained below",
+        None,
+        ROUGH,
     )
 
     @model_validator(mode="after")
@@ -308,17 +310,19 @@ class Profile(Block):
 
 class Beyond(Block):
     position: float = key(
-        "position, other than x = 0, from which the second level extends away from x = 0 [H]"
+        "position, other than 0, beyond which the pre-stress has the second level [H]"
     )
     levels: Distinct[float] = key(
-        "values of the second level, combined with all values of the other lists [S]"
+        "values of the second level. Each value is combined with all values of the other lists [S]"
     )
 
 
 class Duration(Block):
     time: Positive | None = key("the duration [H/c]", None)
     half_periods: Positive | None = key(
-        "the duration in units of pi/sqrt(gamma); only with `boundary: displacement`", None
+        "the duration in half periods of the leaf springs, pi/sqrt(gamma); only with "
+        "`boundary: displacement`",
+        None,
     )
     balance_distances: Positive | None = key(
         "the duration in units of the balance distance; only if the left"
@@ -356,11 +360,13 @@ class Physics(Block):
     """Keys that simulations and scenes have in common."""
 
     boundary: Boundary = key(
-        "what is held on top: the displacement (Gamma = 1) or the stress (Gamma = 0)"
+        "what is held at the top of the layer: the displacement (Gamma = 1) or the stress "
+        "(Gamma = 0)"
     )
     scheme: Scheme | None = key("numerical scheme; default: the value in `model`", None)
     resolved_blocks: int | None = key(
-        "smallest pulse width, below which a run is flagged; default: the value in `model` [dx]",
+        "a run is flagged if its pulse is narrower than this width; default: the value in `model` "
+        "[dx]",
         None,
         ge=1,
     )
@@ -436,7 +442,7 @@ class Simulation(PhysicsOfSweep):
         "instead of `left`, `right` and `width`: list of complete profiles of the pre-stress", None
     )
     beyond: Beyond | None = key(
-        "second level that the pre-stress has beyond a position on one side of x = 0",
+        "second level of the pre-stress, beyond a position on one side of x = 0",
         None,
     )
     gamma: Distinct[Positive] | None = key(GAMMA, None)
@@ -513,8 +519,8 @@ class LayerKeys(Block):
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
     normal_stress: Positive = key("normal stress on the interface [Pa]")
     top: Top | None = key(
-        "what is held on top: `held` means the displacement, `stress` means the stress;"
-        " default: the same as `boundary`",
+        "condition at the top of the layer: fixed displacement (`held`) or fixed stress (`stress`);"
+        " by default it follows from `boundary`",
         None,
     )
 
@@ -534,7 +540,9 @@ class LayerKeys(Block):
 class NamedScene(Profile, PhysicsOfScene):
     """One run with a name, non-dimensional, or in SI units if it has a layer."""
 
-    title: str = key("title of figure and page", words=TITLE, max_length=120, pattern=PRINTABLE)
+    title: str = key(
+        "title of the figure and the page", words=TITLE, max_length=120, pattern=PRINTABLE
+    )
     gamma: Positive | None = key(GAMMA, None)
     damping_ratio: NonNegative | None = key(
         "damping ratio beta/dx; default: the value in `model`", None
@@ -698,7 +706,7 @@ class Preset(Block):
 class Model(Block):
     damping_ratio: NonNegative = key(
         "damping ratio beta/dx. The paper does not state dx. Under the release rule `total`, the "
-        "paper's figure 4, left, agrees with ratios from 0.06 to 0.09"
+        "left panel of the paper's figure 4 agrees with ratios from 0.06 to 0.09"
     )
     release: Release = key(
         "stress that must reach 1 to release a block. The stress `total` includes the damping "
@@ -706,9 +714,9 @@ class Model(Block):
         "as in the printed paper"
     )
     scheme: Scheme = key(
-        "`localised` computes the exact time of every release and stick. `fixed_step` is the "
-        "textbook scheme. `continuum` is the exact solution, which needs no lattice, `max_step` or "
-        "`order`"
+        "numerical scheme. `localised` computes the exact time of every release and stick. "
+        "`fixed_step` is the textbook scheme. `continuum` is the exact solution, which needs no "
+        "lattice, `max_step` or `order`"
     )
     friction: Friction | None = key(
         "friction law; by default `coulomb`, the law of the paper", None, LAW
@@ -718,8 +726,8 @@ class Model(Block):
         "slide backwards, which happens at the stress -(1 + 2 r)"
     )
     resolved_blocks: int = key(
-        "smallest width of a pulse, below which a run is flagged. If the stress is held, a run "
-        "with a narrower Gaussian is flagged, too [dx]",
+        "a run is flagged if its pulse is narrower than this width. If the stress is held, a run "
+        "is also flagged if its Gaussian is narrower than this width [dx]",
         ge=1,
     )
 
@@ -730,7 +738,7 @@ class Measure(Block):
         " this fraction of the balance distance"
     )
     front_window: float = key(
-        "fraction of the front's path, at its end, over which the front speed is measured",
+        "the front speed is measured over this last fraction of the front's path",
         ge=0.05,
         lt=1.0,
     )
@@ -756,9 +764,9 @@ class Sketch(Block):
 
 
 class Steps(Block):
-    from_: Ratio = key("first value", alias="from")
-    to: Ratio = key("last value, larger than the first")
-    count: int = key("number of values", ge=2, le=10_000)
+    from_: Ratio = key("first ratio", alias="from")
+    to: Ratio = key("last ratio, larger than the first")
+    count: int = key("number of ratios", ge=2, le=10_000)
 
     @model_validator(mode="after")
     def _check_order(self) -> Self:
@@ -769,21 +777,21 @@ class Steps(Block):
 
 class DamageZone(Block):
     stiffness_ratios: Steps = key(
-        "values of G/G_r, the shear modulus of the damage zone divided by that of the host rock"
+        "ratios G/G_r of two shear moduli: that of the damage zone divided by that of the host rock"
     )
     thickness_ratios: Distinct[Ratio] = key(
-        "values of H_r/H, the thickness of the host rock divided by that of the damage"
-        " zone; each value is drawn as a curve"
+        "ratios H_r/H of two thicknesses: that of the host rock divided by that of the damage"
+        " zone. Each ratio is drawn as a curve"
     )
 
 
 class LayerMap(Block):
-    gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G)")
+    gamma: Distinct[Fraction] = key("elasticity ratios 2G/(lambda + 2G) of the map")
     fracture_energy: Distinct[Positive] = key(
-        "fracture energies of slip weakening [tau_0^2/(2 gamma)]"
+        "fracture energies of slip weakening in the map [tau_0^2/(2 gamma)]"
     )
     cells: int = key(
-        "number of grid cells over the height of the layer; a second grid has half as many cells",
+        "number of grid cells over the height of the layer. A second grid has half as many cells",
         ge=10,
         le=200,
     )
@@ -821,7 +829,7 @@ class Claim(Block):
 
 
 class Reading(Block):
-    simulation: str = key("simulation whose run is compared with the reading")
+    simulation: str = key("simulation whose run is compared with the number that was read off")
     quantity: str = key("measured number: a column of the tables in results/measurements")
     statement: Statement = key("description of the number that was read off (figure)", min_length=1)
     value: float = key("the number that was read off (figure)")
@@ -830,7 +838,7 @@ class Reading(Block):
         "part of `reading_error` that all readings with a `shared_error` have in common", 0.0
     )
     arrow: bool = key(
-        "true if the number comes from a drawn arrow; fits are then made with and without this "
+        "true if the number was read off a drawn arrow. Fits are then made with and without this "
         "number",
         False,
     )

@@ -29,8 +29,8 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "scaling_displacement": "boundary displacement and equal levels above 0",
-    "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "scaling_displacement": "`boundary: displacement` and equal levels > 0",
+    "scaling_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}
@@ -76,11 +76,19 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     ratio_axes.set(xlabel=f"${SYMBOLS[level_column]}$", ylabel=f"${length}$ / formula")
     # The lines rise with the level under a displacement boundary, and fall under a stress boundary.
     are_rising = boundary == "displacement"
-    ratio_axes.legend(loc="upper left" if are_rising else "upper right", fontsize=SMALL_TEXT)
+    add_legend_above_lines(ratio_axes, on_left=are_rising)
     draw_prestress_inset(length_axes, runs, level_column)
     length_axes.set_title(BOUNDARIES[boundary], loc="center")
     for column in (level_column, second_column):
         add_colour_bar(figure, panels, column)
+
+
+def add_legend_above_lines(axes: Axes, *, on_left: bool) -> None:
+    """Add a legend of one row at the top of a panel, and room for it above the lines."""
+    look: Look = {"ncols": LINE_COUNT, "columnspacing": 1.0, "handlelength": 1.2}
+    axes.legend(loc="upper left" if on_left else "upper right", fontsize=SMALL_TEXT, **look)
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(bottom, top + 0.15 * (top - bottom))
 
 
 def add_colour_bar(figure: Figure, panels: list[Axes], column: str) -> None:

@@ -33,7 +33,7 @@ MIN_SHOWN_RATIO = 1e-2
 CHOICE_LOOKS: dict[str, Look] = {
     "fraction": {"color": ORANGE, "label": "fraction of the path"},
     "damping_ratio": {"color": BLUE, "label": r"damping ratio $b$"},
-    "criterion": {"color": PURPLE, "label": "criterion of the transition"},
+    "criterion": {"color": PURPLE, "label": "end of the transition"},
     "release": {"color": GREEN, "label": "release rule"},
     "": {"color": GREY, "label": "no open choice"},
 }

@@ -69,6 +69,7 @@ def index_page(
         words=texts.glossary,
         figures=texts.captions,
         sizes={name: _shown_size(results / f"figures/{name}.png") for name in figures},
+        labels=_figure_labels(galleries),
         galleries=galleries,
         scenes=scenes,
         exists=lambda path: (results / path).exists(),
@@ -133,6 +134,24 @@ def _caption_of(figure: str, captions: Mapping[str, Caption]) -> Caption:
     if figure in captions:
         return captions[figure]
     return captions["user_defined_sweep"]._replace(title=figure.removeprefix("sweep_"))
+
+
+def _figure_labels(galleries: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    """Return a short label for each figure, such as "Figure 5", "Study 3" or "Sweep 1".
+
+    Figures of the paper have the numbers of the paper. The others are numbered in their order on
+    the page.
+
+    galleries : names of figures by heading
+    """
+    labels = {}
+    for names in galleries.values():
+        for number, name in enumerate(names, start=1):
+            if name.startswith("fig"):
+                labels[name] = f"Figure {int(name[3:5])}"
+            else:
+                labels[name] = f"{name.partition('_')[0].capitalize()} {number}"
+    return labels
 
 
 def _shown_size(path: Path) -> tuple[int, int]:

@@ -7,6 +7,7 @@ the value of the exact solution, and the correction, which is the lattice value 
 It is largest for the largest velocity, which is still growing when the figure ends.
 """
 
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -297,10 +298,14 @@ class LeftPanel:
         """
         is_fitted = with_arrows | ~self.readings["arrow"].to_numpy()
 
+        @cache
+        def values_at(tau0: float, gamma: float) -> np.ndarray:
+            """Return the lattice values of a trial. Those of the optimum are used twice."""
+            return self.lattice_values(np.array([tau0, gamma]), damping_ratio, release, dx)
+
         def fitted_pulls(trial: np.ndarray) -> np.ndarray:
             """Return the independent pulls of all fitted readings, at a trial (tau_0, gamma)."""
-            values = self.lattice_values(trial, damping_ratio, release, dx)
-            return self.independent_pulls(values)[is_fitted]
+            return self.independent_pulls(values_at(*trial))[is_fitted]
 
         optimum = least_squares(
             fitted_pulls,
@@ -312,7 +317,7 @@ class LeftPanel:
         # The inverse of this matrix has the variances of tau_0 and gamma on its diagonal.
         variances = np.diag(np.linalg.inv(optimum.jac.T @ optimum.jac))
         tau0_error, gamma_error = np.sqrt(variances)
-        values = self.lattice_values(optimum.x, damping_ratio, release, dx)
+        values = values_at(*optimum.x)
         exact = self.exact_values(optimum.x, damping_ratio, release)
         return self.readings.drop(columns=["arrow", "shared_error"]).assign(
             release=release,
