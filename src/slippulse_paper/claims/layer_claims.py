@@ -69,8 +69,9 @@ def change_by_refinement(rows: pd.DataFrame, part: str, quantity: str) -> pd.Ser
 def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
     """Return the sliding time divided by the crossing time.
 
-    The crossing time passes between the arrival of the front and that of shear waves from the top.
-    Both times are widths divided by the front speed, which cancels.
+    The crossing time is the time from the arrival of the front at a point of the fault to the
+    arrival of shear waves from the top (`crossing_width`). Both times are widths divided by the
+    front speed, which cancels.
     """
     return pulses["pulse_width"] / crossing_width(pulses)
 
@@ -78,16 +79,17 @@ def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
 def crossing_width(pulses: pd.DataFrame) -> pd.Series:
     """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
-    Shear waves run at the speed sqrt(gamma/2). The waves of a source that moves along the top at
-    the speed v have a straight wave front, which meets the fault at the distance sqrt(2 v^2/gamma -
-    1) behind the source.
+    Where the longitudinal wave of the front meets the top, it sends shear waves down, so that their
+    source moves along the top with the front. Shear waves run at the speed sqrt(gamma/2). If the
+    source has the speed v, they have a straight wave front, which meets the fault at the distance
+    sqrt(2 v^2/gamma - 1) behind the source.
     """
     gamma = pulses.index.get_level_values("gamma")
     return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)
 
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that ruptures under a displacement boundary turn into steady pulses.
+    """Judge whether ruptures under a displacement boundary turn into steady pulses.
 
     The pulses of the part pulse are judged at the positions of the part far, where most of them
     were followed. The template values are the numbers of `numbers_on_splits`.
@@ -103,7 +105,7 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that pulses are also steady if the strength depends on the normal stress.
+    """Judge whether pulses are also steady if the strength depends on the normal stress.
 
     The column coupling has the factor by which the strength depends on this stress. The pulses that
     run to the right and to the left then differ, and each counts.
@@ -136,10 +138,11 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_free_top(evidence: Evidence, id: str) -> Approximate:
-    """Judge that a point slides for one crossing time also if the top of the layer may rise.
+    """Judge whether a point also slides for one crossing time if the top of the layer is free.
 
-    The crossing time passes between the arrival of the front and that of shear waves from the top.
-    The part free has pulses with such a top.
+    A free top may rise. The crossing time is the time from the arrival of the front at a point of
+    the fault to the arrival of shear waves from the top (`crossing_width`). The part free has the
+    pulses of layers with such a top.
     """
     rows = rows_at_station(evidence, LAST)
     # The sliding time of each pulse with a free top, divided by its crossing time, should be 1.
@@ -158,7 +161,7 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
 
 
 def ranges_of_sliding_times(rows: pd.DataFrame) -> dict[str, float]:
-    """Return ranges of sliding times by words for the table of claims.
+    """Return the smallest and largest sliding times, each with words for the table of claims.
 
     The parts free and held have the same pulses, with a top that may rise and with one that cannot.
     """
@@ -217,8 +220,8 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
 def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
     """Judge a statement on the two finest grids of each run, which is undecided if they disagree.
 
-    holds : function that returns for each run if the statement holds. Its argument is 0 for the
-        finest grid and 1 for the second finest.
+    holds : function that returns for each run whether the statement holds. Its argument is 0 for
+        the finest grid and 1 for the second finest.
     """
     return Qualitative(decided=agreed_answers(holds(0), holds(1)))
 
@@ -467,7 +470,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 
 
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that pulses are steady if the fracture energy is below the energy that is released.
+    """Judge whether pulses are steady if the fracture energy is below the released energy.
 
     Each point of the map in `layer_map` below this limit counts as one run. Fracture energies are
     divided by the largest energy that the layer can release, so the limit is 1. Above the limit no
@@ -498,7 +501,9 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 
 
 def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
-    """Return how many points of `layer_map` have each outcome, by words for the table of claims.
+    """Return how many points of `layer_map` have each outcome, with words for the table of claims.
+
+    Also return at how many points the pulse dies because the layer cannot release enough energy.
 
     points : rows of the map, whose column outcome has "grids differ" if the two grids disagree
     """
@@ -767,10 +772,14 @@ def spread_with_level(pulses: pd.DataFrame) -> float:
 def across_a_step(evidence: Evidence) -> dict[str, float]:
     """Return how much the slip of a pulse that enters another pre-stress differs from steady slip.
 
+    The slip at the last station is compared with that of a pulse that is in the same pre-stress
+    from the start. The relative difference is given for the grid on which it is larger.
+
+    The result has these numbers:
+
     lower, higher : the two levels of the pre-stress
-    upwards_difference, downwards_difference : relative difference between the slip at the last
-        station of the pulse that enters the higher or the lower pre-stress, and of a pulse that is
-        in it from the start. The grid with the larger difference counts.
+    upwards_difference : difference for the pulse that enters the higher level
+    downwards_difference : difference for the pulse that enters the lower level
     """
     rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())
