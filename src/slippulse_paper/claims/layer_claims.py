@@ -110,6 +110,8 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
     The column coupling has the factor by which the strength depends on this stress. The pulses that
     run to the right and to the left then differ, and each counts.
 
+    The template values are:
+
     steady_right, steady_left : number of steady pulses that run to each side
     steady_to, failed_from : largest coupling of a steady pulse, smallest of one that is not steady
     weakest, strongest : range of the coupling
@@ -191,6 +193,8 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
     In uniform pre-stress, a rupture must be a crack. If there is a barrier on one side, it must
     stop on this side and become a pulse on the other. Barriers are on the left.
 
+    The template values are:
+
     stop_low, stop_high : range of the distance from x = 0 to the stopped left front, divided by the
         balance distance
     stick_change : largest relative change of the time of the first stick by refinement
@@ -264,6 +268,8 @@ def number_of_grids_with_split(rows: pd.DataFrame, part: str) -> pd.Series:
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     """Return the pulses of the part far at the last station, with columns on how they split.
 
+    The added columns are:
+
     split_at, coarse_split_at, third_split_at : position at which the pulse splits on its finest,
         second finest and third finest grid, divided by the factor by which pulses are wider than
         those at the largest gamma; NaN if the pulse does not split, or if there is no such grid
@@ -298,6 +304,8 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 
 def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses split, where they split, and how well the grid resolves the others.
+
+    The result contains these numbers:
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
         followed at the largest gamma
@@ -335,6 +343,8 @@ def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
 def split_of_step_pulse(step: pd.DataFrame) -> dict[str, float]:
     """Return numbers on the split of the one pulse of the part far that belongs to the part step.
 
+    The result contains these numbers:
+
     step_energy : its fracture energy
     step_split : position at which it splits on its finest grid
     step_only_on_finest : 1 if it splits on no other grid, and 0 otherwise
@@ -352,6 +362,8 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
     """Return at which gamma and fracture energies pulses split, and in which ranges of positions.
 
     Pulses at the largest gamma are narrow, and the others are wide.
+
+    The result contains these numbers:
 
     narrow_gamma, narrow_energy : largest gamma and fracture energy of narrow pulses that split
     split_low, split_high : range of the positions at which narrow pulses split, on the finest grid
@@ -385,6 +397,8 @@ def poorly_resolved(steady: pd.DataFrame) -> dict[str, float]:
     """Return numbers on the steady pulses for which the finest grid is rather coarse.
 
     Such pulses have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
+
+    The result contains these numbers:
 
     resolved_cells : the constant RESOLVED_CELLS
     unresolved : number of these pulses
@@ -432,6 +446,8 @@ def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
 
 def layer_width(evidence: Evidence, id: str) -> Approximate:
     """Compare the pulse width in two dimensions with the paper's formula.
+
+    The template values are:
 
     least, most : range of the fracture energies
     one_dimension_low, one_dimension_high : range of the width divided by the width in one dimension
@@ -521,6 +537,8 @@ def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
 def map_numbers(evidence: Evidence) -> dict[str, float]:
     """Return the conditions of the runs of `layer_map`, and how many of its pulses would split.
 
+    The result contains these numbers:
+
     level_below, level_above, level : levels of the pre-stress before a step, and the level that all
         pulses enter at the step
     step_position, last_position : where the step is, and up to where pulses are followed, in H at
@@ -605,6 +623,8 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
 def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
     """Return numbers by the paper's formulas, at the pre-stress level that most pulses have.
 
+    The result contains these numbers:
+
     level : this level
     formula_speed : front speed by the formula
     gamma_low, thinnest_formula : smallest gamma, and pulse width by the formula at this gamma
@@ -639,6 +659,8 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
 def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses by name, each with one value for each pulse.
 
+    The quantities are:
+
     wider : pulse width divided by the width in one dimension with the same friction and with
         damping
     sliding : time for which a point slides, divided by H/c_s, where c_s is the shear wave speed
@@ -662,6 +684,8 @@ def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 def quantities_at_one_level(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of the pulses that differ only in gamma and fracture energy.
 
+    The quantities are:
+
     width : width by the paper's formula divided by the pulse width
     thinnest_width : pulse width at the smallest gamma, at which the layer is thinnest compared with
         the pulses
@@ -684,6 +708,8 @@ def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses in one dimension with the same friction, and with damping.
 
     The quantities are those of the pulses that differ only in gamma and fracture energy.
+
+    The quantities are:
 
     line_speed : front speed
     line_width, line_slip : width and slip, divided by those of the paper's formulas
@@ -723,6 +749,8 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
 
     The result contains the numbers of `numbers_on_splits`: how many of these pulses split, and
     where.
+
+    The other numbers are:
 
     from_near_slip : largest relative change of the slip between the first and the last station, of
         pulses that do not split
@@ -775,7 +803,7 @@ def across_a_step(evidence: Evidence) -> dict[str, float]:
     The slip at the last station is compared with that of a pulse that is in the same pre-stress
     from the start. The relative difference is given for the grid on which it is larger.
 
-    The result has these numbers:
+    The result contains these numbers:
 
     lower, higher : the two levels of the pre-stress
     upwards_difference : difference for the pulse that enters the higher level

@@ -354,6 +354,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
 def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, list[float]]:
     """Return the deviations of the combinations with the criterion first stick, in three groups.
 
+    The groups are:
+
     undamped : all combinations without damping
     elastic, total : combinations with damping, by release rule
     """
