@@ -591,8 +591,8 @@ def _bessel(z: np.ndarray, order: int) -> np.ndarray:
     if order == 1:
         return slope
     # The second derivative follows from Bessel's equation, z f'' + f' + f/4 = 0. Near z = 0, where
-    # the terms of this equation cancel, the Taylor series is used. The divisor 1 there only avoids a
-    # division by 0.
+    # the terms of this equation cancel, the Taylor series is used. The divisor 1 there only avoids
+    # a division by 0.
     is_small = np.abs(z) < 0.1
     series = (1.0 - z / 12.0 * (1.0 - z / 32.0 * (1.0 - z / 60.0 * (1.0 - z / 96.0)))) / 32.0
     divisor = np.where(is_small, 1.0, z)
