@@ -26,7 +26,7 @@ def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
 
 
 def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
-    """Judge whether no pulse dies where the pre-stress is only a little rough.
+    """Judge whether all pulses survive where the pre-stress is only a little rough.
 
     The paper states no limit of the roughness. Ours is that the standard deviation of the
     pre-stress, divided by its level, is at most the tolerance. If pulses die in rougher ensembles,

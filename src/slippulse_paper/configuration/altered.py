@@ -27,8 +27,8 @@ class Alterations:
         """Find the changes of each simulation, except those that have no influence of their own."""
         self.shipped, self.altered = shipped, altered
         self.changes_of = {}
-        # Here a simulation is None in the keys for which it does not set a value of its own. Only
-        # `resolve` inserts the defaults of the model.
+        # In these simulations a key without a value of its own is None. Only `resolve` inserts the
+        # defaults of the model.
         self._unresolved_simulations = all_simulations(altered)
         shipped_simulations = all_simulations(shipped)
         for name, simulation in self._unresolved_simulations.items():
@@ -90,7 +90,7 @@ class Alterations:
 def _overrides_default(simulation: Simulation, key: str) -> bool:
     """Return True if an unresolved simulation does not use the model's default for a key.
 
-    A key for which it has no value of its own is None.
+    In such a simulation a key without a value of its own is None.
     """
     # A simulation with its own beta does not use the default damping ratio either.
     own_keys = ("damping_ratio", "beta") if key == "damping_ratio" else (key,)

@@ -261,7 +261,7 @@ def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int 
     In a split pulse, points stick early, behind its narrow tip, and later slide again. The argument
     ``part`` is the value of the column part in all rows.
 
-    These columns are:
+    The columns are:
 
     split_position : distance at which a point first sticks early, between the first and the last
         station; NaN if none does
