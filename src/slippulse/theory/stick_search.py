@@ -195,8 +195,8 @@ class StickSearch:
         target[quiet] = QUIET_VELOCITY
         start[quiet], end[quiet] = shortened.time.T
         at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
-        # If du/dt never rises above 0, the shortened step ends next to the start of the step. This
-        # end is then returned.
+        # If du/dt never rises above 0, the shortened step starts and ends at a time next to the
+        # start of the step. This time is then returned.
         zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -219,16 +219,19 @@ class StickSearch:
 
         In the given steps du/dt is 0 at the start, and not positive at the end. In between it may
         rise, but next to a point where a slow front stops it does so only briefly. So it is sampled
-        at times that become ever denser towards the start. If it does not rise, the first sample is
-        at the end of the step, and the second one next to its start.
+        at times that become ever denser towards the start. If it does not rise, both samples are
+        the one next to the start.
         """
         duration = end - start
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
-        # The columns go back in time: column 0 is the end of the step, and column -1 is next to its
-        # start. The shorter step starts at the latest sample above QUIET_VELOCITY; this is column 0
-        # if no sample is above. The shorter step ends at the sample after that, in the column
-        # before.
-        start_column = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        columns = np.stack([start_column, start_column - 1], axis=1)
+        # The columns go back in time: column 0 is the end of the step, and the last column is next
+        # to its start. The shorter step starts at the latest sample above QUIET_VELOCITY, and ends
+        # at the sample after that, in the column before.
+        is_above = fine.velocity > QUIET_VELOCITY
+        rises, latest_above = is_above.any(axis=1), np.argmax(is_above, axis=1)
+        last_column = STEP_FRACTIONS.size - 1
+        start_column = np.where(rises, latest_above, last_column)
+        end_column = np.where(rises, latest_above - 1, last_column)
+        columns = np.stack([start_column, end_column], axis=1)
         rows = np.arange(x.size)[:, None]
         return VelocitySamples(x, fine.time[rows, columns], fine.velocity[rows, columns])
