@@ -86,13 +86,13 @@ class StickSearch:
             time = np.append(kept_times[sliding], batch.time, axis=1)
             velocity = np.append(kept_velocities[sliding], batch.velocity, axis=1)
             samples = VelocitySamples(x[sliding], time, velocity)
-            # The column of the first sample at or below 0, or the number of columns if there is no
-            # such sample. The two kept samples, in columns 0 and 1, are not searched.
+            # The column of the first sample that shows a stick, or the number of columns if none
+            # does. The two kept samples, in columns 0 and 1, are not searched.
             is_stuck = batch.velocity <= -self.rounding_error
             has_stuck = is_stuck.any(axis=1)
             stuck_column = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
             # A zero in a dip between earlier samples comes first. Otherwise the zero is in the step
-            # that ends at the first sample at or below 0.
+            # that ends at the first sample that shows a stick.
             zeros = self._zeros_next_to_minima(samples, stuck_column)
             rows = np.flatnonzero(has_stuck & ~np.isfinite(zeros))
             zeros[rows] = self._zeros_in_steps(samples, rows, stuck_column[rows])
@@ -142,7 +142,7 @@ class StickSearch:
         A sample is a minimum if it is lower than the sample before it, and not higher than the one
         after it. Around each minimum du/dt is sampled again with finer steps. If all fine samples
         are positive, this is repeated around the lowest of them. stuck_column has the column of the
-        first sample at or below 0 in each row; later minima are ignored.
+        first sample that shows a stick in each row; later minima are ignored.
         """
         first_zeros = np.full(samples.x.shape, np.nan)
         change = np.diff(samples.velocity, axis=1)
@@ -159,7 +159,7 @@ class StickSearch:
             return first_zeros
         for _ in range(2):
             fine = self._sample(samples.x[row], np.linspace(start, end, FINE_PARTS + 1, axis=1))
-            # The column of the first fine sample at or below 0. Column 0 means that there is none,
+            # The column of the first fine sample that shows a stick. Column 0 means that none does,
             # since the first fine sample is positive.
             first_below = np.argmax(fine.velocity <= -self.rounding_error, axis=1)
             with_zero = np.flatnonzero(first_below)
