@@ -62,8 +62,8 @@ VARIABLES |= {
     "x": "position, in units of H. In a figure's table: value on the horizontal axis",
     "prestress": "non-dimensional pre-stress",
     "release_time": "time at which the block is first released; NaN if it is never released",
-    "stick_time": "time at which the block last sticks; NaN if it never sticks or slides at the "
-    "end",
+    "stick_time": "time at which the block last sticks; NaN if it slides at the end or never "
+    "sticks",
     "slip": "slip at the end of the run",
     "slip_velocity": "slip velocity at the end of the run",
     "slip_acceleration": "slip acceleration at the end of the run",

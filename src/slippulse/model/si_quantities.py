@@ -29,7 +29,7 @@ VARIABLES = {
     ),
     "stick_time": (
         "time",
-        "time at which the block last sticks; NaN if it slides at the end of the run or never sticks",
+        "time at which the block last sticks; NaN if it slides at the end or never sticks",
     ),
     "slip": ("slip", "slip at the end of the run"),
     "slip_velocity": ("slip_velocity", "slip velocity at the end of the run"),
