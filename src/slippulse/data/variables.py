@@ -51,8 +51,8 @@ VARIABLES |= {
     "first_stick_position": "position of the block that first sticks, in units of H",
     "half_lattice_used": "1 if only one half of a symmetric scene was simulated, otherwise 0",
     "pulse_blocks": "number of blocks in the narrowest pulse at the end of the run",
-    "run_flags": "reasons why the numbers of the run may differ from those of the model; empty if "
-    "there is no such reason",
+    "run_flags": "reasons why the numbers of the run may differ from the numbers of the model; "
+    "empty if there is no such reason",
     "limit_position": "position where the construction of the exact solution ends, in units of H",
     "limit_time": "time at which the construction of the exact solution ends",
     "limit_reason": "reason why the construction of the exact solution ends",

@@ -233,8 +233,8 @@ class Profile(Block):
         "pre-stress at x = 0. At some position the pre-stress must reach 1 [S] (paper)", 1.0
     )
     steps: list[Step] = key(
-        "steps of the pre-stress: farther from x = 0 than each position, the pre-stress has the "
-        "new level [H, S]",
+        "steps of the pre-stress: from each position outwards, away from x = 0, the pre-stress has "
+        "the new level [H, S]",
         [],
         STEPS,
     )
@@ -908,7 +908,7 @@ class Configuration(Block):
         require(
             not is_taken,
             problem,
-            "any name except `index`, and except the name of another scene with `_numbers`",
+            "any name except `index` and the name of another scene followed by `_numbers`",
         )
 
     def _check_reading(self, key: str, reading: Reading) -> None:
