@@ -295,7 +295,7 @@ def replicate(make_options: Mapping[str, str]) -> int:
     unknown = [target for target in targets if is_unknown(target)]
     if code != 0 and unknown:
         names = ", ".join(unknown)
-        print(f"TARGET: {names}, no rule of this project; {ALLOWED_TARGETS}", file=sys.stderr)
+        print(f"TARGET: no rule of this project makes {names}; {ALLOWED_TARGETS}", file=sys.stderr)
     if code == 0:
         record_run(make_options, targets)
         time_taken = timedelta(seconds=round(time.monotonic() - began))

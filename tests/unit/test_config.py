@@ -87,7 +87,7 @@ def test_a_run_that_would_not_end_is_refused_before_it_starts():
         sp.simulate(sp.Scene("stress", profile, 1.0, dx=0.01), samples)
     # The exact solution has a limit of its own.
     with pytest.raises(
-        ValueError, match="allowed: distances with at most 20000 integration panels"
+        ValueError, match="allowed: a shorter distance, with at most 20000 integration panels"
     ):
         sp.theory.Rupture(profile, 0.65, duration=1e6)
     rupture = sp.theory.Rupture(sp.Prestress(0.6, 0.5), 0.65, 0.1, duration=5e4)

@@ -219,11 +219,15 @@ def test_the_cost_bound_of_a_table_holds_and_is_not_too_high():
 
 UNRESOLVED = {
     "noise between blocks": (np.arange(-10.0, 10.0, 0.01), None, "a smaller dx or fewer points"),
-    "a spike between blocks": ([-9.0, 3.01, 3.02, 3.03, 9.0], [0.4, 0.4, 0.9, 0.4, 0.4], "x: 3.02"),
+    "a spike between blocks": (
+        [-9.0, 3.01, 3.02, 3.03, 9.0],
+        [0.4, 0.4, 0.9, 0.4, 0.4],
+        "x = 3.02",
+    ),
     "a start between blocks": (
         [-9.0, 3.02, 9.0],
         [0.4, 1.0, 0.2],
-        "the stress 1 releases no block at x: 3.02; allowed: a value",
+        "no block at x = 3.02, where the stress is 1; allowed: a stress",
     ),
 }
 

@@ -116,9 +116,9 @@ def test_a_study_judges_each_number_and_counts_the_runs_that_kept_it(tables, stu
     pd.testing.assert_series_equal(generous["kept"] == "true", strict["kept"] == "false")
     assert (generous["promised"].notna() == (generous["kept"] != "")).all()
     pd.testing.assert_frame_equal(generous[study.columns], study)
-    assert summarise_promises(generous, 10.0) == "accuracy 10: 2 of 2 runs keep it"
+    assert summarise_promises(generous, 10.0) == "accuracy 10: kept in 2 of 2 runs"
     assert summarise_promises(strict, 1e-9).startswith(
-        "accuracy 1e-09: 0 of 2 runs keep it; missed by run 0 ("
+        "accuracy 1e-09: kept in 0 of 2 runs; missed by run 0 ("
     )
     relative = (study["uncertainty"] / study["value"].abs())[generous["kept"] != ""]
     middle = float(relative.median())

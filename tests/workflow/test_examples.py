@@ -155,7 +155,7 @@ def target_error(table, path):
     assert spacing[0.3, 0.65, 0.0] < spacing[0.8, 0.65, 0.0]
     assert spacing[0.3, 0.65, 0.1] < spacing[0.3, 0.1, 0.1]
     log = path.parents[1] / "logs/study_grid/target_error.log"
-    assert "target_error: accuracy 0.01: 12 of 12 runs keep it" in log.read_text(encoding="utf-8")
+    assert "target_error: accuracy 0.01: kept in 12 of 12 runs" in log.read_text(encoding="utf-8")
 
 
 def layer_map(table, path):

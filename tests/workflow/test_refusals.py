@@ -139,7 +139,7 @@ def assert_clear(message: str, parts: Sequence[str] = ()) -> None:
         assert part in message
     assert len(message.splitlines()) <= 6
     for line in message.splitlines():
-        assert re.search(r"allowed: |it is required|\.\.\. and \d+ more", line), line
+        assert re.search(r"allowed: |this key is required|\.\.\. and \d+ more", line), line
         assert len(line) < 400 and "http" not in line, line
 
 

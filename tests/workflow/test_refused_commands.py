@@ -109,7 +109,7 @@ def test_make_checks_an_overlay_before_snakemake_reads_it(make, tmp_path, overla
 
 def test_make_explains_a_target_that_is_no_rule(make):
     printed = make("replicate", "PRESET=draft", "TARGET=fig12 scenes fig3")
-    assert "TARGET: fig12, no rule of this project; allowed: a figure" in printed
+    assert "TARGET: no rule of this project makes fig12; allowed: a figure" in printed
 
 
 OPTIONS = [

@@ -25,9 +25,9 @@ VARIABLES |= {
     "rate_strengthening": "coefficient alpha of friction that grows in proportion to slip rate, "
     "in units of c/H",
     "work_of_prestress": "work of the pre-stress on the slip",
-    "kinetic_energy": "kinetic energy at the end",
-    "elastic_energy": "elastic energy of the strain at the end",
-    "leaf_spring_energy": "energy of the leaf springs at the end",
+    "kinetic_energy": "kinetic energy at the end of the run",
+    "elastic_energy": "elastic energy of the strain at the end of the run",
+    "leaf_spring_energy": "energy of the leaf springs at the end of the run",
     "viscous_loss": "energy lost to damping and to the increase of friction with slip rate",
     "friction_loss": "work against friction above kinetic friction, such as the fracture energy "
     "of slip weakening. With the law `linear_rate`, the variable `viscous_loss` contains this "
@@ -50,9 +50,9 @@ VARIABLES |= {
     "first_stick_time": "time at which a block first sticks",
     "first_stick_position": "position of the block that first sticks, in units of H",
     "half_lattice_used": "1 if only one half of a symmetric scene was simulated, otherwise 0",
-    "pulse_blocks": "number of blocks in the narrowest pulse at the end",
-    "run_flags": "reasons why the numbers of the run may differ from those of the model; empty if "
-    "there is no such reason",
+    "pulse_blocks": "number of blocks in the narrowest pulse at the end of the run",
+    "run_flags": "reasons why the numbers of the run may differ from the numbers of the model; "
+    "empty if there is no such reason",
     "limit_position": "position where the construction of the exact solution ends, in units of H",
     "limit_time": "time at which the construction of the exact solution ends",
     "limit_reason": "reason why the construction of the exact solution ends",
@@ -62,11 +62,11 @@ VARIABLES |= {
     "x": "position, in units of H. In a figure's table: value on the horizontal axis",
     "prestress": "non-dimensional pre-stress",
     "release_time": "time at which the block is first released; NaN if it is never released",
-    "stick_time": "time at which the block last sticks; NaN if it never sticks or slides at the "
-    "end",
-    "slip": "slip at the end",
-    "slip_velocity": "slip velocity at the end",
-    "slip_acceleration": "slip acceleration at the end",
+    "stick_time": "time at which the block last sticks; NaN if it slides at the end or never "
+    "sticks",
+    "slip": "slip at the end of the run",
+    "slip_velocity": "slip velocity at the end of the run",
+    "slip_acceleration": "slip acceleration at the end of the run",
     "sample_time": "time of a sample",
     "sample_position": "position of a sample, in units of H",
     "sample_slip": "slip at the sampled times and positions",

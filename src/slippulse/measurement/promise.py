@@ -158,7 +158,7 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
     missed = study[study["kept"] == "false"]
     covered_count = study.loc[study["kept"] != "", "point"].nunique()
     kept_count = covered_count - missed["point"].nunique()
-    text = f"accuracy {promise:g}: {kept_count} of {covered_count} runs keep it"
+    text = f"accuracy {promise:g}: kept in {kept_count} of {covered_count} runs"
     relative = (missed["uncertainty"] / missed["value"].abs()).fillna(np.inf)
     misses = []
     for point, uncertainties in relative.groupby(missed["point"]):

@@ -342,7 +342,7 @@ class Scene:
             values["half_lattice"] = bool(half_lattice)
             return cls(**{name: values[name] for name in cls.__dataclass_fields__})
         except KeyError as error:
-            allowed = "every attribute of a run"
+            allowed = "a mapping with every attribute of a run"
             raise ValueError(f"{error.args[0]}: missing; allowed: {allowed}") from None
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .checks import index_of_first_true, refusal
+from .checks import index_of_first_true
 from .prestress import Prestress
 
 # The loss of a point is the amount by which its value lies outside the range of the pre-stress at
@@ -30,9 +30,9 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     is_released = np.any(prestress(neighbours) >= 1.0, axis=0)
     missed_point = index_of_first_true((tau >= 1.0) & ~is_released)
     if missed_point is not None:
-        allowed = f"a value >= 1 at a block; the blocks are at multiples of dx = {dx:g}"
-        key = f"prestress.points: the stress {tau[missed_point]:g} releases no block at x"
-        raise refusal(key, float(x[missed_point]), allowed)
+        point = f"x = {x[missed_point]:g}, where the stress is {tau[missed_point]:g}"
+        allowed = f"a stress >= 1 at a block; blocks are at multiples of dx = {dx:g}"
+        raise ValueError(f"prestress.points: no block at {point}; allowed: {allowed}")
     # `level` is the table alone, without the nucleation peak. The loss of a point is the amount by
     # which it is above or below all of its three blocks.
     at_blocks = prestress.level(neighbours)
@@ -43,8 +43,9 @@ def check_resolved(prestress: Prestress, dx: float) -> None:
     # A rough table may lose more, in proportion to its standard deviation.
     if rms_loss > max(MAX_LOSS, MAX_RELATIVE_LOSS * float(np.std(tau))):
         worst_point = int(np.argmax(losses))
-        key = f"prestress.points: the blocks do not resolve the stress {tau[worst_point]:g} at x"
+        point = f"the stress {tau[worst_point]:g} at x = {x[worst_point]:g}"
         allowed = (
             f"a table that blocks of spacing dx = {dx:g} resolve; use a smaller dx or fewer points"
         )
-        raise refusal(key, float(x[worst_point]), allowed)
+        problem = f"the blocks do not resolve {point}"
+        raise ValueError(f"prestress.points: {problem}; allowed: {allowed}")

@@ -77,7 +77,7 @@ def barrier_depth(
     panels, reason = _continue_into_barrier(_panels_before_barrier(tau0, speed), tau_barrier)
     if reason != "stops":
         raise ValueError(
-            f"tau_barrier: {tau_barrier!r}, at which the motion of the front is {reason}"
+            f"tau_barrier: {tau_barrier!r}; the motion of the front in this barrier is {reason}"
             f" ({arguments}); allowed: levels at which the motion of the front is resolved"
         )
     return panels[-1].end.x / math.sqrt(gamma)

@@ -15,13 +15,13 @@ from .pulse import steady_pulse
 PEAK_VELOCITY_NOTE = (
     "The paper prints the strength drop divided by sqrt(2 G rho). With the paper's own unit of "
     "slip under held displacement, 2 H (mu_s - mu_k) sigma_n/(lambda + 2G), the value is twice as "
-    "large. The"
-    " printed value follows with the unit of slip under held stress. The printed value is the peak "
-    "velocity of the slip averaged over the height."
+    "large. The printed value results from the unit of slip that applies if the stress is held. "
+    "The printed value is the peak velocity of the slip averaged over the height."
 )
 STRESS_DROP_NOTE = (
-    "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop. By its equation"
-    " (C13), stress falls by twice the amount by which the initial stress exceeds kinetic friction."
+    "The paper calls the strength drop (mu_s - mu_k) sigma_n the stress drop. By the paper's "
+    "equation (C13), stress falls by twice the amount by which the initial stress exceeds kinetic "
+    "friction."
 )
 TRANSITION_NOTE = (
     "The paper neglects the elastic coupling. The exact value is for a rupture that starts at a"

@@ -246,8 +246,8 @@ class FastFront:
         longest = self.max_panel_length(background) / self.refinement
         return ValueError(
             f"prestress: level {background.right_value!r} over a distance of {distance:g};"
-            f" allowed: distances with at most {MAX_PANELS} integration panels. Each panel is at"
-            f" most {longest:.3g} long at gamma = {self.gamma:g} and damping_ratio ="
+            f" allowed: a shorter distance, with at most {MAX_PANELS} integration panels. Each"
+            f" panel is at most {longest:.3g} long at gamma = {self.gamma:g} and damping_ratio ="
             f" {self.damping_ratio:g}"
         )
 

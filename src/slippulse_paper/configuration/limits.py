@@ -47,7 +47,7 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     """Raise ValueError or ArithmeticError if a scene of a simulation cannot be run."""
     sweep = resolve(simulation, model, accuracy)
     count = run_count(sweep)
-    allowed = f"up to the number of runs, {count}"
+    allowed = f"at most the number of runs, {count}"
     check_that(simulation.chunks <= count, "chunks", simulation.chunks, allowed)
     # If any run is refused, one at the ends of the lists is, too. Only these are checked.
     scenes, _ = expand(with_promised_spacings(with_ends_of_lists(sweep)))
@@ -58,7 +58,7 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
     try:
         expand(with_promised_spacings(with_ends_of_lists(sweep | {"coarser": coarsest})))
     except ValueError as error:
-        lattice = f"on the lattice of the grid study that is {coarsest:g} times coarser"
+        lattice = f"on the lattice of the grid study whose blocks are {coarsest:g} times as large"
         raise ValueError(f"{error} ({lattice})") from None
 
 

@@ -121,7 +121,7 @@ def _hint_at_other_blocks(key: str | int) -> str:
 
 def _missing_line(path: Path, config: Mapping) -> str:
     """Return the refusal of a mapping without a required key."""
-    line = f"{dotted(path)}: missing; it is required (null removes a key)"
+    line = f"{dotted(path)}: missing; this key is required, and must not be null"
     if path == ("preset",) and config.get("presets"):
         line += f"; allowed: {', '.join(config['presets'])}"
     if len(path) > 2 and isinstance(path[-2], str):

@@ -136,8 +136,8 @@ SEEDS = "a whole number >= 0, a list of different whole numbers, or {from: A, to
 RELEASED = "total, elastic, or a list of both"
 STUDIES = "a list of different names, at least one"
 FACTORS = "two factors >= 1.2, one at least 1.1 times the other"
-UNITS = "one of time, half_periods, balance_distances"
-RULE = "fixed, or scale, width_power and gamma_power"
+UNITS = "one of `time`, `half_periods`, `balance_distances`"
+RULE = "`fixed`, or `scale`, `width_power` and `gamma_power`"
 GAMMA = "elasticity ratio 2G/(lambda + 2G) (paper: near 2/3); not with `boundary: stress`"
 ALPHA = "deprecated; use `friction: {law: linear_rate, alpha: ...}` [c/H]"
 LAWS = "friction law of sliding blocks, explained below; default: the value in `model`"
@@ -153,7 +153,7 @@ KEPT = (
     "acceleration at the end) and `samples` (slip and slip velocity at the times and positions "
     "under the key `samples`)"
 )
-RECORDED = "a list of fronts (required, since all numbers need them), fields, samples"
+RECORDED = "a list with `fronts` (always required), and optionally `fields` and `samples`"
 
 
 def check_rising(first: float, last: float) -> None:
@@ -233,8 +233,8 @@ class Profile(Block):
         "pre-stress at x = 0. At some position the pre-stress must reach 1 [S] (paper)", 1.0
     )
     steps: list[Step] = key(
-        "steps of the pre-stress: beyond each position, away from x = 0, the pre-stress has the "
-        "new level [H, S]",
+        "steps of the pre-stress: from each position outwards, away from x = 0, the pre-stress has "
+        "the new level [H, S]",
         [],
         STEPS,
     )
@@ -270,7 +270,7 @@ class Profile(Block):
         levels = self._keys_with_value("left", "right")
         if not tables:
             missing = [name for name in ("left", "right") if name not in levels]
-            allowed = "levels on both sides, or points, file or rough"
+            allowed = "`left` and `right`, or one of `points`, `file` and `rough`"
             require(not missing, f"{', '.join(missing)}: missing", allowed)
             return self
         # A profile with a table may have no other table, no levels and no steps.
@@ -381,7 +381,7 @@ class Physics(Block):
         given_others = [other for other in others if other in self.model_fields_set]
         are_together = key in self.model_fields_set and bool(given_others)
         problem = f"{key}: given with {', '.join(given_others)}"
-        require(not are_together, problem, "only one of these keys (null removes a key)")
+        require(not are_together, problem, "only one of these keys; set the other keys to null")
 
     @model_validator(mode="after")
     def _check_physics(self) -> Self:
@@ -435,7 +435,7 @@ class Simulation(PhysicsOfSweep):
 
     left: Distinct[float] | None = key("pre-stress levels on the left, below 1 [S]", None)
     right: Literal["same"] | Distinct[float] | None = key(
-        "pre-stress levels on the right [S]", None
+        "pre-stress levels on the right; `same` means the level on the left [S]", None
     )
     width: Distinct[Positive] = key("widths W of the Gaussian at x = 0, at least dx [H]", [1.0])
     profiles: Distinct[Profile] | None = key(
@@ -487,7 +487,7 @@ class Simulation(PhysicsOfSweep):
         is_consistent = rule_keys == {"fixed"} or "fixed" not in rule_keys
         require(is_consistent, "spacing.fixed: given with other keys", "no other key")
         units = sorted(self.duration.model_fields_set)
-        require(len(units) == 1, f"duration: {units}", f"{UNITS} (null removes a key)")
+        require(len(units) == 1, f"duration: {units}", f"{UNITS}; set the other units to null")
         # These two keys use gamma, which is zero if the stress is held.
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
@@ -515,7 +515,9 @@ class LayerKeys(Block):
         "instead of `lame_parameter`: Poisson ratio, between -1 and 0.5", None
     )
     density: Positive = key("density [kg/m3]")
-    static_friction: Positive = key("coefficient of static friction, larger than the kinetic one")
+    static_friction: Positive = key(
+        "coefficient of static friction, larger than that of kinetic friction"
+    )
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
     normal_stress: Positive = key("normal stress on the interface [Pa]")
     top: Top | None = key(
@@ -777,11 +779,11 @@ class Steps(Block):
 
 class DamageZone(Block):
     stiffness_ratios: Steps = key(
-        "ratios G/G_r of two shear moduli: that of the damage zone divided by that of the host rock"
+        "ratios G/G_r: shear modulus of the damage zone divided by that of the host rock"
     )
     thickness_ratios: Distinct[Ratio] = key(
-        "ratios H_r/H of two thicknesses: that of the host rock divided by that of the damage"
-        " zone. Each ratio is drawn as a curve"
+        "ratios H_r/H: thickness of the host rock divided by that of the damage zone. Each ratio"
+        " is drawn as a curve"
     )
 
 
@@ -865,7 +867,9 @@ class Configuration(Block):
     scenes: dict[Name, NamedScene] = key("single runs by name", {})
     measure: Measure = key("settings that define the measured numbers")
     figures: Figures = key("settings of figures that show no simulation")
-    claims: dict[str, Claim] = key("tolerances that replace those of manuscript/claims.yaml", {})
+    claims: dict[str, Claim] = key(
+        "tolerances that replace the tolerances in manuscript/claims.yaml", {}
+    )
     published: dict[Label, Reading] = key("numbers read off a published figure, by name")
     studies: Distinct[Name] | None = key(
         "names of the studies that are run; by default all studies", None, STUDIES
@@ -900,11 +904,11 @@ class Configuration(Block):
         # shows all scenes.
         other_names = {*self.scenes} - {name}
         is_taken = name == "index" or name.removesuffix("_numbers") in other_names
-        problem = f"scenes.{name}: another file has the same name as its file"
+        problem = f"scenes.{name}: a file of this scene would have the name of another file"
         require(
             not is_taken,
             problem,
-            "any name except index, and SCENE_numbers for another scene SCENE",
+            "any name except `index` and the name of another scene followed by `_numbers`",
         )
 
     def _check_reading(self, key: str, reading: Reading) -> None:

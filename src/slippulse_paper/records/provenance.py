@@ -159,7 +159,7 @@ def manifest(files: Sequence[str], base: str | Path, comments: Mapping[str, str]
 COMPARISON_ADVICE = {
     "claims.json": "compare first: the verdicts must be the same",
     "claims.html": "read it",
-    "figures": "compare the CSV, whose numbers the picture draws; look at PNG and PDF",
+    "figures": "compare the numbers in the CSV file; look at the PNG and PDF files",
     "measurements": "numbers must agree within the uncertainties listed in uncertainties/",
     "studies": "numbers must agree to a relative difference of 1e-6",
     "manuscript": "read the report; its numbers follow from the tables",
