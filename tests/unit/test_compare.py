@@ -41,23 +41,27 @@ NAN, INF = math.nan, math.inf
 ELASTIC, DRAFT = CONFIG | {"model": {"release": "elastic"}}, CONFIG | {"preset": "draft"}
 DIFFERENT = [
     # The measured numbers are compared, whatever an older study has.
-    ({}, {"speed": 1.03, "studied": 1.0}, "point 0, speed: 1 against 1.03"),
-    ({}, {"speed": 1.03}, "point 0, speed: 1 against 1.03; allowed: a difference of 0.02"),
+    ({}, {"speed": 1.03, "studied": 1.0}, "point 0, speed: new 1, old 1.03"),
+    ({}, {"speed": 1.03}, "point 0, speed: new 1, old 1.03; allowed: a difference of 0.02"),
     ({}, {"run": {"left": -2.0}}, "sweep.csv: 1 pair of runs differs in left"),
     ({}, {"run": {"gamma": 0.3}}, "sweep.csv: 1 pair of runs differs in gamma"),
-    ({}, {"verdict": "not reproduced"}, "speed: verdict 'reproduced' against 'not reproduced'"),
-    ({}, {"config": ELASTIC}, "model.release: 'total' against 'elastic'"),
+    (
+        {},
+        {"verdict": "not reproduced"},
+        "speed: new verdict 'reproduced', old verdict 'not reproduced'",
+    ),
+    ({}, {"config": ELASTIC}, "model.release: new 'total', old 'elastic'"),
     # On one lattice everything agrees.
-    ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: 1 against 1.5"),
-    ({}, {"speed": NAN, "studied": 1.0}, "speed: 1 against nan"),
-    ({"pulse_state": "a"}, {"pulse_state": "b"}, "pulse_state: 'a' against 'b'"),
-    ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: 'energy' against ''"),
-    ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: 5 against 1"),
-    ({"width_at_end": 1.0}, {}, "sweep.csv: columns in one folder only: width_at_end"),
+    ({"uncertainty": NAN}, {"speed": 1.5, "uncertainty": NAN}, "speed: new 1, old 1.5"),
+    ({}, {"speed": NAN, "studied": 1.0}, "speed: new 1, old nan"),
+    ({"pulse_state": "a"}, {"pulse_state": "b"}, "pulse_state: new 'a', old 'b'"),
+    ({"run_flags": "energy"}, {"run_flags": ""}, "run_flags: new 'energy', old ''"),
+    ({"friction_ratio": 5}, {"friction_ratio": 1}, "friction_ratio: new 5, old 1"),
+    ({"width_at_end": 1.0}, {}, "sweep.csv: only one folder has the column width_at_end"),
     # An infinite number agrees only with an equal one.
     ({"speed": INF}, {"speed": INF}, "1 of 1 numbers agree"),
-    ({"speed": INF}, {}, "speed: inf against 1; allowed: a difference of 0"),
-    ({}, {"speed": INF}, "speed: 1 against inf"),
+    ({"speed": INF}, {}, "speed: new inf, old 1; allowed: a difference of 0"),
+    ({}, {"speed": INF}, "speed: new 1, old inf"),
     # Numbers agree within both uncertainties, at any preset.
     *(({}, other, "1 of 1 numbers agree") for other in ({}, {"speed": 1.015}, {"config": DRAFT})),
 ]
@@ -73,9 +77,12 @@ CHANGED = pd.DataFrame([RUN | {"gamma": 0.3, "speed": 1.0}])
 MISSING = [
     # A run of a single figure with another gamma leaves the old study of uncertainties.
     (lambda tree: CHANGED.to_csv(tree / TABLE, index=False), "0 of 0 numbers agree"),
-    (lambda tree: shutil.copy(tree / TABLE, tree / OWN), "own.csv: in one folder only"),
-    (lambda tree: (tree / "provenance.json").unlink(), "provenance.json: missing in one folder"),
-    (lambda tree: (tree / STUDY).unlink(), "sweep.csv: uncertainties in one folder only"),
+    (lambda tree: shutil.copy(tree / TABLE, tree / OWN), "own.csv: only one folder has this table"),
+    (
+        lambda tree: (tree / "provenance.json").unlink(),
+        "provenance.json: not compared, since one folder does not have it",
+    ),
+    (lambda tree: (tree / STUDY).unlink(), "sweep.csv: only one folder has uncertainties"),
     (
         lambda tree: shutil.rmtree(tree / "measurements"),
         "allowed: a folder of results that are finished",
@@ -139,7 +146,7 @@ def test_runs_of_one_side_are_listed(tmp_path, capsys):
     assert runs.altered_count == 2 and runs.altered_parameters == ["gamma"]
     assert runs.only_old == ["left 0.3, gamma 0.5"] and runs.only_new == []
     assert main([str(here), str(other)]) == 1
-    assert "sweep.csv: only in the other folder: left 0.3, gamma 0.5" in capsys.readouterr().out
+    assert "sweep.csv: only in the old folder: left 0.3, gamma 0.5" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -182,7 +189,7 @@ def test_the_page_has_old_beside_new(tmp_path, capsys):
     assert {image["width"] for image in outline.all("img")} == {"1000"}
     for shown in ("model.release", "✓ reproduced", "× not reproduced", "New: not made"):
         assert shown in text.replace("Old: not made", "New: not made"), shown
-    assert text.count("The numbers drawn are equal.") == 1
+    assert text.count("The old and the new figure show the same numbers.") == 1
     assert "gamma 0.3 (old: gamma 0.65)" in text and "altered run" in text
     numbers = pd.read_csv(here / "compare.csv")
     assert numbers.set_index("quantity").loc["speed", "old_uncertainty"] == 0.01

@@ -258,8 +258,8 @@ def test_the_command_line_is_refused(shipped, case):
 
 
 # Figures, simulations that they draw, changes of these, and the refusals.
-EQUAL = "at least one run with boundary displacement and equal levels above 0"
-BALANCED = "at least one run with boundary stress, left level below 0, right level 0 and no steps"
+EQUAL = "at least one run with `boundary: displacement` and equal levels > 0"
+BALANCED = "at least one run with `boundary: stress`, left level < 0, right level 0, no steps"
 OTHER = "; put other runs into a simulation with another name"
 NOW = {"time": 5.0, "balance_distances": None}
 STRESS_PROFILE = {"profiles": [{"left": -0.3, "right": 0.1}]}

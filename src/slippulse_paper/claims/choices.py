@@ -26,7 +26,7 @@ CHOICE_WORDS = {
     "fraction": "the fraction of the path that counts as arrest",
     "release": "the release rule",
     "damping_ratio": r"the damping ratio $\beta/\Delta x$",
-    "nucleation": "the nucleation",
+    "nucleation": "the shape of the nucleation",
     "criterion": "the end of the transition",
 }
 
@@ -182,7 +182,9 @@ class OverChoices(Claim):
         ]
         in_doubt = self._in_doubt()
         settings = [
-            f"{CHOICE_WORDS[name]} {text_of_value(value)}"
+            f"{CHOICE_WORDS[name]} *{value}*"
+            if isinstance(value, str)
+            else f"{CHOICE_WORDS[name]} = {text_of_value(value)}"
             for name, value in in_doubt.choice.items()
             if name in CHOICE_WORDS
         ]

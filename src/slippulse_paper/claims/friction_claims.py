@@ -100,7 +100,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     finest, coarsest = with_strengthening.iloc[:, 0], with_strengthening.iloc[:, -1]
     # The number of steady pulses may differ between lattices. The largest number is shown.
     steady_count = float((~with_strengthening).sum().max())
-    words = "number of values of rate strengthening for which a pulse stays steady"
+    words = "coefficients of slip velocity at which a pulse stays steady"
     # The caveat is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),

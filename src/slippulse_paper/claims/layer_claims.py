@@ -504,7 +504,9 @@ def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
     """
     # The first three outcomes are reported even if no point has them.
     counts = {"steady": 0, "growing": 0, "dying": 0} | dict(points["outcome"].value_counts())
-    by_words = {f"points that are {name}": float(count) for name, count in counts.items()}
+    by_words = {
+        f"points of the map with the outcome {name}": float(count) for name, count in counts.items()
+    }
     # Fracture energies are divided by the largest energy that the layer can release.
     dies_by_energy = (points["outcome"] == "dying") & (points["fracture_energy"] > 1.0)
     words = "points where the pulse dies, with more fracture energy than the layer can release"

@@ -160,8 +160,8 @@ def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     # A run without a pulse is undecided (None). It has no width.
     is_thin = (1.0 / width <= allowed).astype(object).where(width.notna(), None)
     further = {
-        "narrowest pulse, in H": width.min(),
-        "widest pulse, in H": width.max(),
+        "width of the narrowest pulse, in units of H": width.min(),
+        "width of the widest pulse, in units of H": width.max(),
         "slowest front speed divided by the speed of the fastest wave": table[
             "front_speed_right"
         ].min(),

@@ -238,13 +238,14 @@ def described_median_ratios(combinations: Sequence[Combination]) -> dict[str, fl
     The paper leaves open at which point of its path the left front counts as arrested: after a
     fraction of the path, or at the last release. The claim is judged with each of these ends, and
     has one median ratio of the measured and the estimated number for each. The labels, such as
-    "median ratio, end at last release", are shown in the table of claims, in alphabetical order.
+    "measured / estimated value (median), end at last release", are shown in the table of claims,
+    in alphabetical order.
     """
     by_label = {}
     for fraction, median in median_ratio_by_fraction(combinations).items():
         # The fraction is a number, or the text LAST_RELEASE_FRACTION, which is already in words.
         end = fraction if isinstance(fraction, str) else f"{text_of_value(fraction)} of the path"
-        by_label[f"median ratio, end at {end}"] = median
+        by_label[f"measured / estimated value (median), end at {end}"] = median
     return dict(sorted(by_label.items()))
 
 
@@ -498,7 +499,10 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
     judge = partial(judge_arrest_distance, evidence, id)
     over_all_runs = judge(tables)
     ratio = ratios(finest, "last_release_distance", "balance_distance")
-    extremes = {"smallest ratio": float(ratio.min()), "largest ratio": float(ratio.max())}
+    extremes = {
+        "smallest measured / predicted distance": float(ratio.min()),
+        "largest measured / predicted distance": float(ratio.max()),
+    }
     further = {**over_all_runs.further, **extremes}
     return over_choices(judge_each(runs, judge), shown=over_all_runs, further=further)
 
@@ -530,7 +534,7 @@ def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame
         extra_verdict=lambda _tolerance: verdict_on_both,
         further={
             "median gap in H between the last release and x_minus, over all sweeps": gap,
-            "exponent": exponent,
+            "fitted exponent of the distance": exponent,
         },
         template_values={"near": gap_verdict, "gap": gap, "gap_uncertainty": gap_uncertainty},
     )

@@ -38,11 +38,11 @@ def _has_negative_left_level(run: Run) -> bool:
 
 # Conditions on a run, by the texts that stand for them in the DRAWS of figures.
 CONDITIONS: dict[str, Callable[[Run], bool]] = {
-    "boundary displacement": lambda run: run.boundary == "displacement",
-    "boundary displacement and a level above 0": _is_pulse,
-    "boundary displacement and equal levels above 0": _has_equal_levels,
-    "boundary stress": lambda run: run.boundary == "stress",
-    "boundary stress, left level below 0, right level 0 and no steps": _has_negative_left_level,
+    "`boundary: displacement`": lambda run: run.boundary == "displacement",
+    "`boundary: displacement` and a level > 0": _is_pulse,
+    "`boundary: displacement` and equal levels > 0": _has_equal_levels,
+    "`boundary: stress`": lambda run: run.boundary == "stress",
+    "`boundary: stress`, left level < 0, right level 0, no steps": _has_negative_left_level,
 }
 
 

@@ -74,7 +74,9 @@ def _refuse_removed_simulations(merged: Mapping, shipped: Mapping) -> None:
         return
     removed = sorted({*shipped["simulations"]} - {*sweeps})
     if removed:
-        allowed = "a sweep, since figures and verdicts need each shipped simulation"
+        allowed = (
+            "other values, but not null, since figures and verdicts need each shipped simulation"
+        )
         raise ConfigError(f"simulations.{removed[0]}: null; allowed: {allowed}")
 
 

@@ -34,9 +34,9 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "regimes_displacement": "boundary displacement",
-    "regimes_displacement_asymmetric": "boundary displacement",
-    "regimes_stress": "boundary stress",
+    "regimes_displacement": "`boundary: displacement`",
+    "regimes_displacement_asymmetric": "`boundary: displacement`",
+    "regimes_stress": "`boundary: stress`",
 }
 
 BOUNDARIES = {"displacement": r"$\Gamma = 1$, any $\gamma$", "stress": r"$\Gamma = 0$"}

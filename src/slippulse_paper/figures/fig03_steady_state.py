@@ -22,8 +22,8 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "steady_displacement": "boundary displacement and a level above 0",
-    "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "steady_displacement": "`boundary: displacement` and a level > 0",
+    "steady_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 
 

@@ -24,8 +24,8 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "space_time_displacement": "boundary displacement and equal levels above 0",
-    "space_time_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "space_time_displacement": "`boundary: displacement` and equal levels > 0",
+    "space_time_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 
 PANELS = {"displacement": "a", "stress": "b"}

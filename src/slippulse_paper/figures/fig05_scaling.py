@@ -29,8 +29,8 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "scaling_displacement": "boundary displacement and equal levels above 0",
-    "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "scaling_displacement": "`boundary: displacement` and equal levels > 0",
+    "scaling_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 table = transition_table
 BOUNDARIES = {"displacement": r"$\Gamma = 1$", "stress": r"$\Gamma = 0$"}

@@ -24,8 +24,8 @@ from slippulse.plotting.style import (
 NEEDS = {"data": ["burridge_knopoff_displacement", "burridge_knopoff_stress"]}
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "burridge_knopoff_displacement": "boundary displacement and equal levels above 0",
-    "burridge_knopoff_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "burridge_knopoff_displacement": "`boundary: displacement` and equal levels > 0",
+    "burridge_knopoff_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 
 # Lengths in the drawing are in block spacings, unless another unit is given.

@@ -11,5 +11,5 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "steady_displacement": "boundary displacement and a level above 0",
+    "steady_displacement": "`boundary: displacement` and a level > 0",
 }

@@ -11,5 +11,5 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "steady_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "steady_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }

@@ -9,5 +9,5 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "damping_displacement": "boundary displacement and equal levels above 0",
+    "damping_displacement": "`boundary: displacement` and equal levels > 0",
 }

@@ -26,7 +26,7 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "arrest": "boundary stress, left level below 0, right level 0 and no steps",
+    "arrest": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 
 # A name such as "#D55E00", or red, green, blue and opacity.

@@ -20,8 +20,8 @@ NEEDS = {
 }
 # Runs of each simulation that the figure can draw, in the words of configuration/drawn.py.
 DRAWS = {
-    "scaling_displacement": "boundary displacement and equal levels above 0",
-    "scaling_stress": "boundary stress, left level below 0, right level 0 and no steps",
+    "scaling_displacement": "`boundary: displacement` and equal levels > 0",
+    "scaling_stress": "`boundary: stress`, left level < 0, right level 0, no steps",
 }
 
 BOUNDARY_LOOKS = {"displacement": (BLUE, r"$\Gamma = 1$"), "stress": (ORANGE, r"$\Gamma = 0$")}

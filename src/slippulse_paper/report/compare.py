@@ -34,8 +34,8 @@ from .joined_runs import JoinedRuns, describe_run, join_runs, varying_parameters
 MAX_SHOWN_LINES = 10
 # The files that are compared beside the tables, and the line about a difference in each of them.
 CHANGE_LINES = {
-    "provenance.json": "configuration: {key}: {here!r} against {shipped!r}",
-    "claims.json": "{key}: verdict {here!r} against {shipped!r}",
+    "provenance.json": "configuration: {key}: new {here!r}, old {shipped!r}",
+    "claims.json": "{key}: new verdict {here!r}, old verdict {shipped!r}",
 }
 
 
@@ -103,7 +103,7 @@ class Comparison:
         """Return a sentence on how many numbers agree."""
         agreement = f"{self.agree} of {self.compared} numbers agree"
         unknown = f"{self.unknown} numbers differ and have no uncertainty"
-        return f"{agreement} within the sum of the two uncertainties; {unknown}"
+        return f"{agreement} within the sum of old and new uncertainty; {unknown}"
 
 
 def compare(new: Path, old: Path) -> Comparison:
@@ -114,7 +114,7 @@ def compare(new: Path, old: Path) -> Comparison:
     result = Comparison()
     new_tables, old_tables = _table_names(new), _table_names(old)
     for name in sorted(new_tables ^ old_tables):
-        result.other_differences.append(f"{name}: in one folder only")
+        result.other_differences.append(f"{name}: only one folder has this table")
     # Compare the configurations and the verdicts, in the files that CHANGE_LINES names. A file that
     # is older than its inputs does not describe the other results of its folder.
     outdated_files = {folder: RecordedFiles(folder).older_than_inputs() for folder in (new, old)}
@@ -151,7 +151,7 @@ def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> No
         return
     new_path, old_path = new / name, old / name
     if not (new_path.exists() and old_path.exists()):
-        result.other_differences.append(f"{name}: missing in one folder; not compared")
+        result.other_differences.append(f"{name}: not compared, since one folder does not have it")
         return
     # `changes` names its arguments for another use: here, the old content is in place of the
     # shipped configuration.
@@ -198,7 +198,7 @@ def _compare_tables(result: Comparison, new: Path, old: Path, name: str) -> pd.D
     # Files of the grid studies, which give the uncertainties of the numbers.
     new_study, old_study = new / "uncertainties" / name, old / "uncertainties" / name
     if new_study.exists() != old_study.exists():
-        differences.append("uncertainties in one folder only")
+        differences.append("only one folder has uncertainties")
     result.other_differences += [f"{name}: {difference}" for difference in differences]
 
     # Compare the numbers and texts of the joined runs.
@@ -243,8 +243,8 @@ def _describe_rows(table: pd.DataFrame, rows: pd.Index, parameters: Sequence[str
 
 def _differences_of_runs(runs: TableRuns) -> list[str]:
     """Return lines about the runs that are in one folder only, and about altered runs."""
-    lines = [f"only in this folder: {run}" for run in runs.only_new]
-    lines += [f"only in the other folder: {run}" for run in runs.only_old]
+    lines = [f"only in the new folder: {run}" for run in runs.only_new]
+    lines += [f"only in the old folder: {run}" for run in runs.only_old]
     count = runs.altered_count
     if count:
         pairs = "1 pair of runs differs" if count == 1 else f"{count} pairs of runs differ"
@@ -255,14 +255,14 @@ def _differences_of_runs(runs: TableRuns) -> list[str]:
 def _differences_of_columns(new: pd.DataFrame, old: pd.DataFrame) -> list[str]:
     """Return a line for each column that only one of two tables has."""
     columns = sorted(new.columns.symmetric_difference(old.columns))
-    return [f"columns in one folder only: {column}" for column in columns]
+    return [f"only one folder has the column {column}" for column in columns]
 
 
 def _differing_numbers(numbers: pd.DataFrame) -> list[str]:
     """Return a line for each number that differs by more than its uncertainty allows."""
     lines = []
     for row in numbers[numbers["outcome"] == DIFFERS].itertuples():
-        pair = f"{row.new:.6g} against {row.old:.6g}"
+        pair = f"new {row.new:.6g}, old {row.old:.6g}"
         allowed = f"allowed: a difference of {row.allowed:.2g}"
         lines.append(f"point {row.point}, {row.quantity}: {pair}; {allowed}")
     return lines

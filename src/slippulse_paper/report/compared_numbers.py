@@ -102,7 +102,7 @@ def differing_texts(new: MeasuredRuns, old: MeasuredRuns, columns: list[str]) ->
             new_text = new_texts[column].iat[position]
             old_text = old_texts[column].iat[position]
             if new_text != old_text:
-                yield f"point {point}, {column}: {new_text!r} against {old_text!r}"
+                yield f"point {point}, {column}: new {new_text!r}, old {old_text!r}"
 
 
 def compare_numbers(

@@ -64,10 +64,12 @@ function drawMap({ scene, rupture, exact, map: found, limits, known, pulse, stea
   if (pulse && steady && deviates(pulse, steady)) {
     state.push("The pulse is not yet steady at the end of the map.");
   } else if (scene.gamma > 0 && scene.right > 0 && !steady) {
-    state.push("α is beyond αc: no pulse is steady, and the part that slides becomes ever wider.");
+    state.push("α is above its critical value αc. No pulse is steady,"
+      + " and the sliding part becomes ever wider.");
   }
   if (limits.length) {
-    state.push("Blank wedges are unknown, since the trailing edge is slower than the waves.");
+    state.push("In the blank wedges the solution is unknown,"
+      + " since the trailing edge is slower than the waves.");
   }
   at("state").textContent = state.join(" ");
   const speeds = `${format(exact.speed)} on the right and ${format(exact.speedLeft)} on the left`;
