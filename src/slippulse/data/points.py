@@ -23,7 +23,7 @@ SAMPLE_DIMENSIONS = {name: (name,) for name in SAMPLE_AXES} | {
 class Recorded(dict[str, np.ndarray]):
     """The arrays of one run by name, and its single numbers as ``attrs``.
 
-    It can be read like a Dataset, and is much faster to build.
+    Such an object can be read like a Dataset, and is much faster to build.
     """
 
     def __init__(self, arrays: dict[str, np.ndarray], attrs: dict[str, Any]) -> None:

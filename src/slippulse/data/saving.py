@@ -44,8 +44,9 @@ def _store_dimensions(
 ) -> None:
     """Store the dimensions of a Dataset, and attach them to its variables.
 
-    netCDF-4 stores each dimension as an HDF5 dimension scale. This is the coordinate variable of
-    the dimension. If there is none, it is an empty array, and its scale has a name that says so.
+    netCDF-4 stores each dimension as an HDF5 dimension scale. The scale is the coordinate variable
+    of the dimension. For a dimension without such a variable, the scale is an empty array with a
+    name that says so.
 
     stored : the variables in the file by name
     """

@@ -29,7 +29,7 @@ def load_dataset(path: str | Path) -> xr.Dataset:
             dimensions = _dimensions_of_variables(file, items, attributes)
             variables = {}
             for name, item in items.items():
-                # These two attributes describe dimensions. They are not part of the Dataset.
+                # These two attributes describe dimensions, and are not part of the Dataset.
                 attributes[name].pop("REFERENCE_LIST", None)
                 scale_name = attributes[name].pop("NAME", b"")
                 # An item with such a NAME is a dimension without a coordinate, not a variable.

@@ -24,9 +24,9 @@ ALLOWED_SWEEP = "a Dataset that run_sweep or open_sweep returned"
 def with_parameters(sweep: xr.Dataset) -> xr.Dataset:
     """Return a sweep with its parameters as coordinates along the dimension ``point``.
 
-    The result also has the coordinate ``row_start``, the number of the first block of each run. It
-    is needed to find the blocks of a run after a selection of runs. A selection that was written to
-    a file by ``to_netcdf`` already has it, and the numbers ``point`` of its runs.
+    The result also has the coordinate ``row_start``, the number of the first block of each run.
+    This number is needed to find the blocks of a run after a selection of runs. A selection that
+    was written to a file by ``to_netcdf`` already has it, and the numbers ``point`` of its runs.
     """
     if "point" not in sweep.variables:
         attributes = {"units": "1", "long_name": VARIABLES["point"]}
@@ -126,16 +126,16 @@ def as_grid(sweep: xr.Dataset, over: Sequence[str] | None = None) -> xr.Dataset:
     # The axes take the place of the dimension `point` and of its index.
     indexed_names = [name for name in sweep.xindexes if "point" in sweep[name].dims]
     without_index = sweep.drop_indexes(indexed_names).drop_vars("point", errors="ignore")
-    runs = _with_constants(without_index, axes)
+    runs = _with_shared_as_scalars(without_index, axes)
     if len(axes) == 1:
         return runs.swap_dims(point=axes[0]).sortby(axes[0])
-    # `unstack` would drop runs with the value NaN, such as the width of no Gaussian. So the numbers
-    # of the values take the place of the values until the grid is made.
+    # `unstack` would drop runs with the value NaN, such as the width of no Gaussian. So each value
+    # is replaced by its index among the values of the axis until the grid is made.
     axis_coordinates = {}
     for name in axes:
-        values, numbers = np.unique(runs[name].values, return_inverse=True)
+        values, indices = np.unique(runs[name].values, return_inverse=True)
         axis_coordinates[name] = (name, values, runs[name].attrs)
-        runs = runs.assign_coords({name: ("point", numbers)})
+        runs = runs.assign_coords({name: ("point", indices)})
     return runs.set_index(point=axes).unstack("point").assign_coords(axis_coordinates)
 
 
@@ -162,7 +162,7 @@ def _check_product(sweep: xr.Dataset, axes: Sequence[str]) -> None:
     check_that(is_complete, "number of runs", run_count, allowed)
 
 
-def _with_constants(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
+def _with_shared_as_scalars(sweep: xr.Dataset, axes: Sequence[str]) -> xr.Dataset:
     """Return a sweep in which each parameter that all runs share is a single value.
 
     axes : parameters that keep their values along ``point``

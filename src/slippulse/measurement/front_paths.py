@@ -2,7 +2,7 @@
 
 The release times of the blocks give the path of a front, and their stick times give the path of a
 trailing edge. The argument ``edge`` of a function selects one of them by the name of its times,
-"release_time" or "stick_time".
+"release_time" or "stick_time". The argument ``side`` is "right" or "left" of x = 0.
 """
 
 from typing import NamedTuple
@@ -78,8 +78,8 @@ def known_until(run: AnyRun, side: str = "right", edge: str = "release_time") ->
         next_block = int(np.argmin(np.abs(np.asarray(run["x"]) - next_position)))
         is_unknown = np.isnan(run["slip"][next_block])
     else:
-        # Slip at the end was not recorded. The block is unknown if waves from the limit position
-        # have reached it. Their speed is 1.
+        # Slip at the end was not recorded. The block is unknown if waves from the limit position,
+        # whose speed is 1, have reached it.
         wave_arrival = limit + abs(next_position - run.attrs["limit_position"])
         is_unknown = wave_arrival <= run.attrs["end_time"]
     return float(np.max(times)) if is_unknown else np.inf
@@ -95,7 +95,7 @@ def front_position(
 ) -> np.ndarray:
     """Return the distance of a front (or trailing edge) from x = 0 at one or more times.
 
-    It is NaN before the first event, and where an exact solution does not know it.
+    The distance is NaN before the first event, and where an exact solution does not know the front.
     """
     block_times, block_distances = front_path(run, side, edge)
     time = np.asarray(time, dtype=float)

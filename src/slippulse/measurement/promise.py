@@ -137,7 +137,8 @@ def judge_promises(
     is_promised = []
     for run_number, quantity in zip(study["point"], study["quantity"], strict=True):
         is_promised.append(math.isfinite(promise) and quantity in covered[run_number])
-    # The uncertainty is NaN if a coarser lattice does not have the number. This counts as a miss.
+    # The uncertainty is NaN if a coarser lattice does not have the number. Such a number counts as
+    # a miss.
     is_within = study["uncertainty"] <= promise * study["value"].abs()
     kept = np.where(is_promised, np.where(is_within, "true", "false"), "")
     return study.assign(promised=np.where(is_promised, promise, np.nan), kept=kept)
@@ -149,7 +150,7 @@ def summarise_promises(study: pd.DataFrame, promise: float) -> str:
     Of each run that missed it, the worst number is reported with its relative uncertainty.
 
     study : a grid study with the columns that `judge_promises` adds: one row for each number
-        (column quantity) of each run (column point). It has an empty text in the column kept if
+        (column quantity) of each run (column point). A row has an empty text in the column kept if
         nothing was promised for this number.
     """
     if not math.isfinite(promise):

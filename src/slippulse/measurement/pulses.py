@@ -53,7 +53,7 @@ def leading_pulse(run: AnyRun, window: float) -> LeadingPulse:
     if pulses:
         leading_velocity[pulses[-1]] = velocity[pulses[-1]]
     peak_velocity, peak_distance = parabola_peak(distance, leading_velocity)
-    trailing_edge = _trailing_edge(run, peak_distance, speed) if pulses else np.nan
+    trailing_edge = _trailing_edge_distance(run, peak_distance, speed) if pulses else np.nan
     width = front - trailing_edge
     # The slip is measured at stuck blocks that are close behind the trailing edge. Those in the
     # inner half of its path are left out, because the nucleation has influenced them.
@@ -80,7 +80,7 @@ def _mean_near_end(distance: np.ndarray, values: np.ndarray, length: float) -> f
     return float(np.mean(values[is_near_end]))
 
 
-def _trailing_edge(run: AnyRun, peak_distance: float, speed: float) -> float:
+def _trailing_edge_distance(run: AnyRun, peak_distance: float, speed: float) -> float:
     """Return the distance of the trailing edge from x = 0 at the end of a run.
 
     The four blocks behind the peak that stuck last are extrapolated to the end at the front speed.
@@ -142,8 +142,8 @@ def sliding_stretches(velocity: np.ndarray) -> list[slice]:
 def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     """Return the largest value of sampled y, and its position.
 
-    They are those of the parabola through the largest sample and its two neighbours, or of the
-    sample itself if it is the first or the last.
+    Value and position are those of the parabola through the largest sample and its two neighbours,
+    or of the sample itself if it is the first or the last.
     """
     top = int(np.argmax(y))
     if not 0 < top < y.size - 1:
@@ -160,7 +160,7 @@ def parabola_peak(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
 def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
     """Return slip, slip velocity and slip acceleration of the blocks on the right, by name.
 
-    Their positions relative to the front of the pulse have the name "xi".
+    The positions of these blocks relative to the front of the pulse have the name "xi".
     """
     names = ("x", "slip", "slip_velocity", "slip_acceleration")
     start = np.searchsorted(run["x"], 0.0)
@@ -171,9 +171,9 @@ def comoving(run: AnyRun, pulse: LeadingPulse) -> dict[str, np.ndarray]:
 def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
     """Return the amplitude of the slip acceleration across a pulse.
 
-    It is the amplitude of the half cosine wave that fits the acceleration best between the front
-    and the trailing edge. (The largest acceleration would not do: on an undamped lattice it belongs
-    to the oscillations behind the front.) NaN if the pulse has fewer than 4 blocks.
+    The result is the amplitude of the half cosine wave that fits the acceleration best between the
+    front and the trailing edge. (The largest acceleration would not do: on an undamped lattice it
+    belongs to the oscillations behind the front.) NaN if the pulse has fewer than 4 blocks.
     """
     fields = comoving(run, pulse)
     is_in_pulse = (fields["xi"] <= 0.0) & (fields["xi"] >= -pulse.width)
@@ -186,8 +186,8 @@ def acceleration_amplitude(run: AnyRun, pulse: LeadingPulse) -> float:
 def slip_variation(run: AnyRun, pulse: LeadingPulse) -> float:
     """Return by how much the final slip varies along the last third of the trailing edge's path.
 
-    It is the largest minus the smallest slip there, divided by the slip of the pulse. NaN if there
-    is no such path.
+    The result is the largest minus the smallest slip there, divided by the slip of the pulse. NaN
+    if there is no such path.
     """
     fields = comoving(run, pulse)
     # The path of the trailing edge begins at x = 0. Four blocks at its end are left out, because

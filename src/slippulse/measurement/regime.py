@@ -40,8 +40,8 @@ def classify_regime(
       last third of the run.
 
     still_fraction : a block counts as at rest below this fraction of the largest velocity
-    steady_tolerance : largest change of a steady pulse; by this much, the speed of a front may be
-        below the wave speed 1
+    steady_tolerance : largest change of a steady pulse. A front still counts as fast as the waves
+        if it is slower than their speed 1 by this much, and as moving if it is faster than this
     """
     change = _change_of_largest_velocity(run)
     x, final_velocity = _final_velocity(run)
@@ -56,7 +56,7 @@ def classify_regime(
         is_sliding = final_velocity >= still_fraction * largest
         running_sides = int(np.any(is_sliding[x < 0.0])) + int(np.any(is_sliding[x > 0.0]))
     ways = "two-way" if running_sides == 2 else "one-way"
-    # If the rupture runs on one side, the slower front still moves if its speed is not nearly 0.
+    # If the rupture runs on one side, the slower front still moves unless its speed is nearly 0.
     has_slow_front = running_sides == 1 and min(left_speed, right_speed) > steady_tolerance
     # An exact solution may not know all velocities. Then they are NaN, and the regime is undecided.
     final_samples = np.asarray(run["sample_velocity"])[-1]
@@ -80,7 +80,7 @@ def classify_regime(
 def _change_of_largest_velocity(run: AnyRun) -> float:
     """Return the relative change of the largest velocity over the last third of a run.
 
-    It is -1 if nothing slid at the start of this third.
+    The change is -1 if nothing slid at the start of this third.
     """
     times, velocity = np.asarray(run["sample_time"]), np.asarray(run["sample_velocity"])
     start = int(np.argmin(np.abs(times - 2.0 / 3.0 * times[-1])))
@@ -91,8 +91,8 @@ def _change_of_largest_velocity(run: AnyRun) -> float:
 def _final_velocity(run: AnyRun) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and slip velocities at the end of a run.
 
-    They are those of all blocks if these were recorded. Otherwise they are those of the samples,
-    which may miss a narrow or distant pulse.
+    The velocities of all blocks are returned if they were recorded. Otherwise those of the samples
+    are returned, which may miss a narrow or distant pulse.
     """
     if "slip_velocity" in run:
         return np.asarray(run["x"]), np.asarray(run["slip_velocity"])
@@ -128,7 +128,7 @@ def is_pulse(centre: float, largest: float, still_fraction: float) -> bool:
 def _late_speed(run: AnyRun, side: str) -> float:
     """Return the mean front speed over the last third of a run.
 
-    It is 0 if the front starts later, or if its position is not known at the end.
+    The speed is 0 if the front starts later, or if its position is not known at the end.
     """
     start, end = 2.0 / 3.0 * run.attrs["end_time"], run.attrs["end_time"]
     start_distance, end_distance = front_position(run, [start, end], side)

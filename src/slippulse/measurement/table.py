@@ -147,8 +147,8 @@ def shortened_table(profile_as_json: str) -> str:
 def crossed_prestress(run: AnyRun, window: float) -> dict[str, float]:
     """Return the lowest pre-stress that each front has crossed, and the level that it crossed last.
 
-    They have the names lowest_prestress_SIDE, which is NaN if the front has crossed no block, and
-    level_ahead_SIDE, which is NaN if the pre-stress is not constant over the window.
+    These numbers have the names lowest_prestress_SIDE, which is NaN if the front has crossed no
+    block, and level_ahead_SIDE, which is NaN if the pre-stress is not constant over the window.
 
     window : the last part of a front's path, as a fraction of the path
     """
@@ -169,9 +169,9 @@ def measure_transition(run: AnyRun, fraction: float) -> dict:
     """Return the numbers of the transition by name; none if the run has no defined transition.
 
     Under a displacement boundary, the paper defines a transition for equal positive levels. If the
-    pre-stress is a table of points, it is measured for different positive levels, too. Under a
-    stress boundary, the paper defines it for a negative level on the left and the level 0 on the
-    right, without steps.
+    pre-stress is a table of points, the transition is measured for different positive levels, too.
+    Under a stress boundary, the paper defines a transition for a negative level on the left and the
+    level 0 on the right, without steps.
 
     fraction : under a stress boundary, the transition is the time at which the left front has
         covered this fraction of its way to the balance position

@@ -67,8 +67,9 @@ def grid_study(values: Sequence[float], factors: Sequence[float]) -> GridStudy:
 def studied_columns(table: pd.DataFrame, keys: Sequence[str]) -> list[str]:
     """Return the names of the columns of a measured table that a grid study examines.
 
-    These are the columns of floats, except the ``keys`` and the predictions of the paper. The table
-    must have been read from its file, because this decides the types of its columns.
+    A grid study examines the columns of floats, except the ``keys`` and the predictions of the
+    paper. The table must have been read from its file, because this decides the types of its
+    columns.
 
     keys : columns that identify a run or describe its computation
     """
@@ -90,8 +91,8 @@ def grid_tables(
     """
     finest = tables[0]
     names = studied_columns(finest, keys)
-    # All quantities of the first run are followed by those of the second run, and so on. This array
-    # has one row for each run and quantity, and one column for each spacing.
+    # This array has all quantities of the first run, followed by those of the second run, and so
+    # on. There is one row for each run and quantity, and one column for each spacing.
     values = np.stack([table[names].to_numpy().ravel() for table in tables], axis=1).tolist()
     studies = pd.DataFrame([grid_study(three_values, factors) for three_values in values])
     runs = pd.DataFrame({"point": range(len(finest))}).join(finest[list(keys)])

@@ -125,8 +125,8 @@ def _balance_position(prestress: Prestress) -> float:
 
     `prestress_balance_position` names the conditions and errors. Results are cached.
     """
-    # Beyond this distance the pre-stress is constant. It must be 0 on the right, so that integrals
-    # to infinity end there.
+    # Beyond this distance the pre-stress is constant. The pre-stress must be 0 on the right, so
+    # that integrals to infinity end there.
     distance = _distance_of_constant_levels(prestress)
     right = float(prestress.level(distance))
     allowed = "0, since otherwise the integral of the pre-stress up to infinity is not finite"

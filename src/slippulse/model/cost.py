@@ -155,8 +155,8 @@ def _distance_reached(ends: np.ndarray, speeds: np.ndarray, start: float, durati
 def _bound_scene_reach(scene: Scene) -> float:
     """Return an upper bound on the distance from x = 0 that a front reaches on either side.
 
-    Both fronts are assumed to begin at t = 0 beyond all Gaussians and all positions where the
-    rupture may nucleate, as if they had crossed them in no time.
+    In this bound, both fronts are assumed to begin at t = 0 beyond all Gaussians and all positions
+    where the rupture may nucleate, as if they had crossed them in no time.
     """
     profile = scene.prestress
     end_of_bumps = max(

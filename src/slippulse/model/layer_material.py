@@ -189,7 +189,7 @@ class LayerMaterial:
         """
         if quantity == "stress":
             return self.kinetic_strength + self.strength_drop * values
-        return values * self._scale(quantity)
+        return values * self._si_unit(quantity)
 
     def convert_from_si(self, values: Any, quantity: str) -> Any:
         """Convert numbers in SI units to non-dimensional ones; the inverse of `convert_to_si`.
@@ -207,7 +207,7 @@ class LayerMaterial:
         float or array
         """
         if quantity != "stress":
-            return values / self._scale(quantity)
+            return values / self._si_unit(quantity)
         tau = (values - self.kinetic_strength) / self.strength_drop
         # Rounding must not move static friction below 1, since blocks are released at 1. The
         # difference from kinetic friction loses more digits if the two are nearly equal.
@@ -215,7 +215,7 @@ class LayerMaterial:
         tau = np.where(np.abs(tau - 1.0) <= rounding_error, 1.0, tau)
         return tau if np.ndim(values) else float(tau)
 
-    def _scale(self, quantity: str) -> float:
+    def _si_unit(self, quantity: str) -> float:
         """Return the unit of a quantity in SI units."""
         check_choice("quantity", quantity, tuple(UNITS))
         return getattr(self.scales, "stress" if quantity == "stress_difference" else quantity)

@@ -390,7 +390,7 @@ class Prestress(ExplainsRemovedNames):
     def interval_table(self) -> np.ndarray:
         """Array with one row for each interval, and the fields of `Interval` as columns.
 
-        It is cached, because building it from a long table takes as long as a run.
+        The array is cached, because building it from a long table takes as long as a run.
         """
         return np.array(self.intervals)
 

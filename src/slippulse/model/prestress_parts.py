@@ -82,14 +82,13 @@ def check_order(x: np.ndarray) -> None:
 
     Rows are counted from 1 in the messages.
     """
-    # The index of the point before the first one that is too low. Its row is this index plus 1.
     before = index_of_first_true(np.diff(x) < 0.0)
     if before is not None:
-        row, position = before + 2, float(x[before + 1])
+        too_low = before + 1
         allowed = f">= {x[before]:.10g}, the x of the row before"
-        raise refusal(f"prestress.points x in row {row}", position, allowed)
+        raise refusal(f"prestress.points x in row {too_low + 1}", float(x[too_low]), allowed)
     first_of_three = index_of_first_true(x[2:] == x[:-2])
     if first_of_three is not None:
-        row, position = first_of_three + 3, float(x[first_of_three + 2])
+        third = first_of_three + 2
         allowed = "at most 2 rows with the same x; the pre-stress jumps between them"
-        raise refusal(f"prestress.points x in row {row}", position, allowed)
+        raise refusal(f"prestress.points x in row {third + 1}", float(x[third]), allowed)

@@ -26,7 +26,8 @@ BOUNDARIES = ("displacement", "stress")
 SCHEMES = ("localised", "fixed_step", "continuum")
 ORDERS = (3, 4, 5, 6, 7, 8)
 # The lattice contains all bumps and all released parts of a table from the start, with 200 bytes
-# for each block. Their distance from x = 0 may be at most this number of blocks.
+# for each block. The distance of such a bump or part from x = 0 may be at most this number of
+# blocks.
 MAX_REACH_IN_BLOCKS = 10**6
 # After this number of steps, adding one more step does not change the time, by rounding.
 MAX_STEPS = 2.0**52
@@ -260,8 +261,8 @@ class Scene:
         if not (math.isfinite(stiffness) and math.isfinite(damping_ratio) and largest > 0.0):
             allowed = "numbers from which a stable time step can be computed"
             raise ValueError(f"gamma: {self.gamma!r}, at {ratios}; allowed: {allowed}")
-        # Presets compute max_step from the stable step. If that overflows, max_step is 0, and the
-        # message above names the cause. This check therefore comes after it.
+        # Presets compute max_step from the stable step. If that overflows, max_step is 0. The
+        # message above names the cause, so that max_step is checked only after it.
         check_number("max_step", self.max_step, above=0.0)
         if self.scheme != "continuum":
             longest_duration = MAX_STEPS * self.max_step * self.dx
@@ -347,7 +348,7 @@ class Scene:
 
 # The numbers of a scene in the order of its fields.
 SCENE_NUMBERS = definitions_of(Scene)
-# Those among them that are coefficients of terms that the paper's equation does not have.
+# The numbers that are coefficients of terms that the paper's equation does not have.
 EXTRA_TERMS = {name: term for name, term in SCENE_NUMBERS.items() if term.extra_term}
 DEFAULTS_OF_EXTRA_TERMS = {name: term.default for name, term in EXTRA_TERMS.items()}
 # Names of the attributes that describe a simulation in a data file.
@@ -428,7 +429,8 @@ REQUIRED_RESULTS = ("end_time", "releases", "re_releases", "half_lattice_used", 
 def check_run_attributes(attributes: Mapping) -> None:
     """Raise ValueError if attributes of a run are missing or not allowed.
 
-    They are the parameters of the scene, and the results that measurements and figures need.
+    The attributes are the parameters of the scene, and the results that measurements and figures
+    need.
     """
     Scene.from_attributes(attributes)
     for name in REQUIRED_RESULTS:

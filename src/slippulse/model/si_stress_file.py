@@ -17,8 +17,8 @@ STRESS_UNITS = {"": 1.0, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1
 def read_in_si(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
     """Return the positions (m) and the stresses (Pa) of a file.
 
-    Its columns have the default names of `Prestress.from_file`, such as x and stress. Raises
-    StressFileError, which names the file, the row and what is allowed.
+    The columns of the file have the default names of `Prestress.from_file`, such as x and stress.
+    Raises StressFileError, which names the file, the row and what is allowed.
     """
     table = read_stress_file(path)
     x_unit = _unit_value(path, "x", table.x_unit, LENGTH_UNITS)

@@ -75,7 +75,7 @@ def accurate_step(
 
     damping_ratio, gamma_dx2, alpha_dx : beta/dx, gamma dx^2 and alpha dx, as in `largest_step`
     """
-    # The shortest mode is the fastest. In units of dx, it has k = 4 + gamma dx^2 and
+    # The shortest mode is the fastest. In units of dx, this mode has k = 4 + gamma dx^2 and
     # 2c = 4 beta/dx + alpha dx. Here frequency is sqrt(k), and half_damping is c.
     frequency = math.sqrt(4.0 + gamma_dx2)
     half_damping = 2.0 * damping_ratio + 0.5 * max(alpha_dx, 0.0)

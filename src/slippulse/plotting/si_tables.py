@@ -45,8 +45,8 @@ def table_in_si(table: pd.DataFrame, layer: Layer) -> pd.DataFrame:
     if "unit" not in table:
         table["unit"] = ""
     axis_units = _convert_coordinates(table, layer)
-    # The physical quantity, such as "stress", of the number in the column `value` of each row. It
-    # follows from the role or, for other roles, from the column `series`. It is NaN for a
+    # The physical quantity, such as "stress", of the number in the column `value` of each row. The
+    # quantity follows from the role or, for other roles, from the column `series`, and is NaN for a
     # dimensionless number.
     quantities = table["role"].map(ROLE_QUANTITIES).fillna(table["series"].map(QUANTITIES))
     # All values of one quantity on the axes get the same unit.
@@ -76,7 +76,10 @@ def _convert_coordinates(table: pd.DataFrame, layer: Layer) -> dict[str, str]:
 
 
 def _convert_values(table: pd.DataFrame, rows: pd.Index, quantity: str, layer: Layer) -> str:
-    """Convert the values of some rows of a table to SI units in place, and return their unit."""
+    """Convert the values of some rows of a table to SI units in place, and return their unit.
+
+    quantity : physical quantity of these values, such as "stress"
+    """
     numbers = layer.convert_to_si(table.loc[rows, "value"], quantity)
     unit = readable_unit(quantity, numbers)
     table.loc[rows, "value"] = numbers / unit.value

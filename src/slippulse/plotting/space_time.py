@@ -1,9 +1,9 @@
 """The space-time map of a run: slip velocity, front, trailing edge and pre-stress.
 
-The first half of the module makes a table of everything that is drawn. Its column role decides what
-is drawn from a row, for example a map or a front; its other columns are series, position, time and
-value. The second half draws such a table after `style.by_role` has split it into one table for each
-role.
+The first half of the module makes a table of everything that is drawn. The column role of this
+table decides what is drawn from a row, for example a map or a front; the other columns are series,
+position, time and value. The second half draws such a table after `style.by_role` has split it into
+one table for each role.
 """
 
 import numpy as np
@@ -108,8 +108,8 @@ def _append_remarks(title: str, rows_by_role: dict[str, pd.DataFrame]) -> str:
 def drawn_range(run: xr.Dataset) -> tuple[float, float]:
     """Return the lowest and highest position to draw.
 
-    They enclose the released blocks (all blocks if none was released) with a margin. On a side
-    where the samples end before these blocks, the range ends at the outermost sample.
+    The range encloses the released blocks (all blocks if none was released) with a margin. On a
+    side where the samples end before these blocks, the range ends at the outermost sample.
     """
     released = run["x"].values[np.isfinite(run["release_time"].values)]
     drawn = released if released.size else run["x"].values

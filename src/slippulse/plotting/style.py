@@ -199,7 +199,7 @@ def few_ticks(axis: Axis, ticks: Sequence[float] | np.ndarray) -> None:
 def colour_scale(quantity: str) -> ScalarMappable:
     """Return the colour scale of a quantity of SCALES.
 
-    It can be drawn as a colour bar, and its method ``to_rgba`` converts values to colours.
+    The scale can be drawn as a colour bar, and its method ``to_rgba`` converts values to colours.
     """
     scale = SCALES[quantity]
     colours = matplotlib.colormaps[scale.colour_map](np.linspace(scale.first, scale.last, 256))
@@ -277,7 +277,11 @@ def legend_above(figure: Figure, axes: Axes, **look: Any) -> None:
 
 
 def legend_below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
-    """Place a legend below all panels of a figure."""
+    """Place a legend below all panels of a figure.
+
+    handles : one artist for each entry of the legend
+    columns : number of columns of the legend
+    """
     figure.legend(handles=handles, loc="outside lower center", ncols=columns)
 
 
@@ -312,7 +316,8 @@ def _add_note(figure: Figure, note: str) -> None:
 def _save_png(canvas: FigureCanvasAgg, path: Path, source: str | None) -> None:
     """Write a PNG with a palette of 256 colours, the last of which is white.
 
-    It has a third of the bytes of a PNG with all colours, and a mean error below half a level.
+    Such a file has a third of the bytes of a PNG with all colours, and a mean error below half a
+    level.
 
     source : text that is written into the file as a comment
     """

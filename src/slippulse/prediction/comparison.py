@@ -62,7 +62,7 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 def _paper_transition(run: AnyRun) -> tuple[float, float]:
     """Return the time and the length of the transition by the paper's formulas.
 
-    They are NaN with an extra term of the equation, where the formulas are not valid. If the
+    Both are NaN with an extra term of the equation, where the formulas are not valid. If the
     pre-stress levels on the two sides differ, only the length is NaN.
     """
     if used_extra_terms(run.attrs):
@@ -115,7 +115,7 @@ def _prestress_at_front(run: AnyRun) -> float:
 def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> str:
     """Return "steady", "unsteady" or "thick_front" for a pulse with a front faster than the waves.
 
-    The pulse is compared with the steady one at the pre-stress tau and the measured speed. These
+    The pulse is compared with the steady one at the pre-stress tau and the measured speed. The two
     cannot be compared ("thick_front") if the layer at the front in which damping acts is too thick,
     since the theory of the front speed neglects leaf springs within this layer.
     """
@@ -138,10 +138,10 @@ def _compare_with_steady_pulse(run: AnyRun, pulse: LeadingPulse, tau: float) -> 
 def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None = None) -> float:
     """Return the largest deviation of slip velocity from the paper's pulse, divided by its peak.
 
-    The velocity of the paper's pulse is a half wave of a cosine, equations (9) and (C10). Its peak
-    is put at the measured peak. NaN under a stress boundary, with an extra term of the equation, if
-    the level ahead is not between 0 and 1, if there is no pulse, or if the pulse has too few
-    blocks.
+    The velocity of the paper's pulse is a half wave of a cosine, equations (9) and (C10). The peak
+    of the half wave is put at the measured peak. NaN under a stress boundary, with an extra term of
+    the equation, if the level ahead is not between 0 and 1, if there is no pulse, or if the pulse
+    has too few blocks.
 
     level_ahead : pre-stress in front of the pulse; by default the level on the right of the profile
     """

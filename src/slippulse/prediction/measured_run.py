@@ -18,7 +18,7 @@ from ..model.scene import check_run_attributes
 from ..theory.prestress_pieces import nucleation_intervals
 from .comparison import measured_row
 
-# The settings under ``measure`` in config/config.yaml. They are repeated here, because this file is
+# The settings under ``measure`` in config/config.yaml. They are repeated here, because that file is
 # not part of the library.
 MEASURE_SETTINGS: dict[str, Any] = {
     "fraction": 0.95,
@@ -123,8 +123,8 @@ def _measure_in_model_units(run: xr.Dataset, **settings: Any) -> dict[str, Any]:
     profile = prestress_from(run.attrs)
     is_held = run.attrs["boundary"] == "displacement"
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
-        # The paper defines no transition for two different levels, so that `measured_row` has none,
-        # unless the pre-stress is a table of points. Here the first stick counts as the transition.
+        # The paper defines no transition if the two levels differ. `measure` takes the first stick,
+        # which is the transition at equal levels.
         numbers |= first_stick(run)
     has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:
@@ -172,7 +172,7 @@ def _has_all_blocks(run: xr.Dataset) -> bool:
         return False
     # If half of the lattice was simulated, the recorded numbers of releases are those of that half.
     is_counted = x >= 0.0 if run.attrs["half_lattice_used"] else True
-    # A block may be released again. Here only its first release counts.
+    # A block may be released again, but release_time has only its first release.
     first_releases = run.attrs["releases"] - run.attrs["re_releases"]
     has_equal_spacing = np.allclose(np.diff(x), run.attrs["dx"], rtol=1e-6, atol=0.0)
     return has_equal_spacing and np.count_nonzero(is_released & is_counted) == first_releases

@@ -48,7 +48,8 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def exact_front_speeds(runs: list[Run], side: str) -> np.ndarray:
     """Return the front speed of each run on a side, "left" or "right", without leaf springs.
 
-    It is the speed into the pre-stress far from the nucleation point; NaN if this is not positive.
+    Each speed is that into the pre-stress far from the nucleation point; NaN if this is not
+    positive.
     """
     levels = np.array([far_level(run, side) for run in runs])
     ratios = np.array([rounded_damping_ratio(run) for run in runs])

@@ -34,11 +34,12 @@ def _row(run: Run, left_speed: float, right_speed: float) -> dict[str, float]:
         "exact": _exact_pulse(run, right_level, right_speed),
     }
     row: dict[str, float] = {}
-    # If there is no pulse, it is None. It then has none of the attributes, so that they are NaN.
+    # A pulse that does not exist is None and has none of the attributes, so that all numbers are
+    # NaN.
     for source, pulse in right_pulses.items():
         for name in ("width", "slip", "peak_velocity"):
             row[f"{source}_pulse_{name}"] = getattr(pulse, name, np.nan)
-        row[f"{source}_pulse_acceleration"] = _acceleration(pulse) if pulse else np.nan
+        row[f"{source}_pulse_acceleration"] = _acceleration_amplitude(pulse) if pulse else np.nan
     left_pulse = _exact_pulse(run, left_level, left_speed)
     for name in ("slip", "peak_velocity"):
         row[f"exact_left_pulse_{name}"] = getattr(left_pulse, name, np.nan)
@@ -54,11 +55,11 @@ def _exact_pulse(run: Run, level: float, speed: float) -> SteadyPulse | None:
     )
 
 
-def _acceleration(pulse: SteadyPulse) -> float:
+def _acceleration_amplitude(pulse: SteadyPulse) -> float:
     """Return the amplitude of slip acceleration, as `acceleration_amplitude` measures it.
 
-    It is the projection of the acceleration on a half wave of a cosine, from the front to the rear
-    of the pulse. The integrals are computed by Gauss-Legendre quadrature.
+    This amplitude is the projection of the acceleration on a half wave of a cosine, from the front
+    to the rear of the pulse. The integrals are computed by Gauss-Legendre quadrature.
     """
     nodes, weights = np.polynomial.legendre.leggauss(32)
     xi = -0.5 * pulse.width * (1.0 + nodes)

@@ -46,9 +46,9 @@ def _regime(run: Run, still_fraction: float) -> str:
 def _regime_with_steps(run: Run) -> str:
     """Return the final regime of a run whose pre-stress has steps; UNDECIDED in most cases.
 
-    It is decided if a pulse runs to the right, towards the steps, and reaches the last one. A pulse
-    runs to the right under a stress boundary, with a negative level on the left and the level 0 on
-    the right. Before the last step, only a negative level could stop it.
+    The regime is decided if a pulse runs to the right, towards the steps, and reaches the last one.
+    A pulse runs to the right under a stress boundary, with a negative level on the left and the
+    level 0 on the right. Before the last step, only a negative level could stop it.
     """
     profile = run.prestress
     has_pulse_levels = profile.left < 0.0 and profile.right == 0.0

@@ -59,7 +59,9 @@ def _row_under_displacement(run: Run) -> dict[str, float]:
     has_equal_levels = profile.left == profile.right and profile.left > 0.0
     if not (_gaussian_width(profile) and has_equal_levels):
         return {**NO_TRANSITION}
-    find_stick = partial(_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release)
+    find_stick = partial(
+        _numbers_of_first_stick, profile, run.gamma, rounded_damping_ratio(run), run.release
+    )
     return NO_TRANSITION | value_or(find_stick, NO_TRANSITION)
 
 
@@ -88,12 +90,12 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
 
 
 @cache
-def _first_stick(
+def _numbers_of_first_stick(
     profile: Prestress, gamma: float, damping_ratio: float, release: str
 ) -> dict[str, float]:
     """Return the numbers of the transition under a displacement boundary, which is the first stick.
 
-    They are named as the columns of `predictions`.
+    The numbers are named as the columns of `predictions`.
     """
     exact = exact_transition_displacement(profile, gamma, damping_ratio, release)
     return {
@@ -129,9 +131,10 @@ def _numbers_for_unit_width(
 def _half_width(crack: ArrestingCrack) -> float:
     """Return the width of the pulse far from the nucleation, at half of its peak velocity.
 
-    The pulse consists of waves that run to the right. Each starts at a position x when a front
-    arrives there. Its slip velocity is half the integral of the pre-stress to the right of x, which
-    is largest where the pre-stress is 0, and half as large at one position on each side.
+    The pulse consists of waves that run to the right. Each wave starts at a position x when a front
+    arrives there. The slip velocity of the wave is half the integral of the pre-stress to the right
+    of x. This velocity is largest if the pre-stress is 0 at x, and half as large at one position on
+    each side.
     """
 
     def excess_over_half_peak(x: float) -> float:

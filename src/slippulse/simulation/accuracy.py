@@ -63,7 +63,8 @@ VELOCITY_ERROR, VELOCITY_ERROR_DAMPED = 0.6, 0.6
 
 # Number of levels that represent a table of pre-stress.
 TABLE_LEVELS = 9
-# A table may jump at a point. It is evaluated this fraction of its length before and after it.
+# A table may jump at a point. The pre-stress is therefore evaluated just before and just after each
+# point, at this fraction of the length of the table.
 JUMP_WIDTH = 1e-9
 # Positions, in units of its width, at which a Gaussian on a table is evaluated.
 POSITIONS_IN_WIDTHS = np.linspace(-8.0, 8.0, 1601)
@@ -252,7 +253,8 @@ def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: fl
         width * math.sqrt(demand.error / speed_error),
         demand.error / transition_error_per_dx,
     ]
-    # If the demand includes the width, the slip and the peak velocity of the pulse at the end.
+    # With fields, the demand includes the width, the slip and the peak velocity of the pulse at the
+    # end.
     if demand.fields:
         # Each of these errors is a constant times dx/width. The front covers up to
         # 1/(2 tau_0 v^2) blocks of the pulse width, where tau_0 is the level.
@@ -317,7 +319,7 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
     # Distances from the nucleation at which the pre-stress falls to 0, if it does.
     distances = _distances_to_zero(demand.levels, prestress)
     spacings = [length / MIN_BLOCKS for length in (demand.peak_width, *distances)]
-    # The error of the speed of a front that runs into positive pre-stress.
+    # If a front runs into positive pre-stress, the error of its speed limits the spacing.
     if max(demand.levels) > 0.0:
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
     # T_trans and slip velocity tend to a limit only if the left front stops in negative pre-stress
@@ -329,7 +331,7 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
         if not prestress.steps:
             transition_error = TRANSITION_ERROR + TRANSITION_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / transition_error)
-        # If the demand includes the slip velocity at the end.
+        # With fields, the demand includes the slip velocity at the end.
         if demand.fields:
             velocity_error = VELOCITY_ERROR + VELOCITY_ERROR_DAMPED * damping_ratio
             spacings.append(error * distances[0] / velocity_error)

@@ -1,7 +1,7 @@
 """The exact solution of a scene in the continuum limit.
 
-It has the form of a solution on a lattice, with the same fields at multiples of dx and the same
-numbers. Functions that measure or draw a run can therefore take either.
+The exact solution has the form of a solution on a lattice, with the same fields at multiples of dx
+and the same numbers. Functions that measure or draw a run can therefore take either.
 """
 
 import math
@@ -66,8 +66,8 @@ def _positions(scene: Scene, rupture: Rupture | None) -> np.ndarray:
 def _fields_at_end(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[str, np.ndarray]:
     """Return the fields of a run at positions x.
 
-    They are release and stick times, and slip, slip velocity and acceleration at the time ``end``.
-    Without a rupture, everything is at rest.
+    The fields are release and stick times, and slip, slip velocity and acceleration at the time
+    ``end``. Without a rupture, everything is at rest.
     """
     if rupture is None:
         motion = ("slip", "slip_velocity", "slip_acceleration")
@@ -76,8 +76,8 @@ def _fields_at_end(rupture: Rupture | None, x: np.ndarray, end: float) -> dict[s
     interval = ACCELERATION_INTERVAL * end
     velocity = rupture.slip_velocity(x, end)
     velocity_change = velocity - rupture.slip_velocity(x, end - interval)
-    # The rupture gives the first stick of a point. It is also the last one where the solution is
-    # known until the end.
+    # The rupture gives the first stick of a point. The first stick is also the last one where the
+    # solution is known until the end.
     is_known = rupture.horizon(x) > end
     return {
         "release_time": rupture.release_time(x),

@@ -42,7 +42,8 @@ PRESTRESS_POSITIONS = 10_001
 def flags_of(scene: Scene, solution: Solution) -> dict:
     """Return the attributes ``pulse_blocks`` and ``run_flags`` of a run.
 
-    They are the number of blocks across the narrowest pulse, and the flags separated by commas.
+    These attributes are the number of blocks across the narrowest pulse, and the flags separated by
+    commas.
     """
     blocks = blocks_across_narrowest_pulse(scene, solution)
     numbers = solution.numbers
@@ -91,8 +92,8 @@ def lowest_stress(scene: Scene, solution: Solution) -> float:
 def first_stick_undone(scene: Scene, solution: Solution) -> bool:
     """Return True if the first block to stick was released again.
 
-    This happens near a slow undamped front. Under a stress boundary the first stick is not a
-    transition, so that the flag has no meaning and the result is False.
+    Such a release happens near a slow undamped front. Under a stress boundary the first stick is
+    not a transition, so that the flag has no meaning and the result is False.
     """
     may_be_undone = scene.boundary == "displacement" and solution.numbers["re_releases"] > 0
     # A later release removes the stick time of a block.
@@ -102,10 +103,10 @@ def first_stick_undone(scene: Scene, solution: Solution) -> bool:
 def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
     """Return True if the first stick may be due to waves of a few blocks just behind a front.
 
-    This is possible if the front is held back by negative pre-stress, and if the damping is weak.
-    In the continuum limit another position sticks first, at a later time. Under a stress boundary,
-    only a rupture between two negative levels sticks at all. A first stick that was undone has a
-    flag of its own.
+    Such waves are possible if the front is held back by negative pre-stress, and if the damping is
+    weak. In the continuum limit another position sticks first, at a later time. Under a stress
+    boundary, only a rupture between two negative levels sticks at all. A first stick that was
+    undone has a flag of its own.
     """
     numbers, profile = solution.numbers, scene.prestress
     time, position = numbers["first_stick_time"], numbers["first_stick_position"]
@@ -127,9 +128,9 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
 def front_restarted(scene: Scene, solution: Solution) -> bool:
     """Return True if waves of a few blocks may have set a front in motion again.
 
-    This is possible if the damping is weak, and such a front has stood still for long. Only tables
-    of pre-stress are examined. For constant levels under a stress boundary, `slippulse.measure`
-    returns the transition state "stalled" if the lattice held up the front.
+    Such a restart is possible if the damping is weak, and the front has stood still for long. Only
+    tables of pre-stress are examined. For constant levels under a stress boundary,
+    `slippulse.measure` returns the transition state "stalled" if the lattice held up the front.
     """
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS or not scene.prestress.points:
         return False
@@ -181,8 +182,9 @@ def blocks_across_narrowest_pulse(scene: Scene, solution: Solution) -> int:
 def _nucleation_width(scene: Scene, solution: Solution) -> float:
     """Return the distance over which the pre-stress of the nucleation falls off.
 
-    It is the width of the Gaussian at x = 0 (the length of the whole solution if there is no
-    Gaussian), or the distance at which the pre-stress falls below 0 if that is shorter.
+    This distance is the width of the Gaussian at x = 0. If the pre-stress falls below 0 at a
+    shorter distance, it is that distance. Without a Gaussian, the length of the whole solution
+    takes the place of the width.
     """
     profile, dx = scene.prestress, scene.dx
     width = solution.x.size * dx if profile.width is None else profile.width

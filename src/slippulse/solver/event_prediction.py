@@ -9,7 +9,8 @@ are found by Newton's method.
 
 All times are counted from the start of the step: ``now`` is the time from which on events are
 searched for, and ``step_end`` is the end of the step. ``top`` is the order of the highest time
-derivative of slip that the step has computed.
+derivative of slip that the step has computed. The ``coefficients`` of a polynomial begin with that
+of the lowest power, and end with that of the power ``degree``.
 
 Arguments such as ``medium``, ``motion`` and ``prediction`` are groups of numbers and arrays, which
 `arrays` defines. Row k of ``w``, which is ``motion.derivatives``, is time derivative k of slip; its
@@ -37,7 +38,7 @@ MAX_NEWTON_STEPS = 100
 
 @kernel_function()
 def evaluate_polynomial(coefficients, degree, x):
-    """Return the value at x of a polynomial, whose coefficients begin with the lowest power."""
+    """Return the value of a polynomial at x."""
     value = coefficients[degree]
     for k in range(degree - 1, -1, -1):
         value = coefficients[k] + x * value
@@ -116,7 +117,7 @@ def find_threshold_crossing(coefficients, slopes, degree, lower, upper):
 
 @kernel_function(inline=True)
 def elastic_force(medium, motion, block):
-    """Return the elastic force of its neighbours on a block, with the slip by events of the step.
+    """Return the elastic force on a block by its neighbours, with the slip by events of the step.
 
     The stored strain is that of the start of the step, and does not contain this slip yet.
     """
@@ -143,7 +144,8 @@ def predict_release(medium, motion, prediction, block, now, step_end, top):
     # their slip and, through damping, by their velocities. The coefficient of power k is derivative
     # k of the stress, divided by k!. In the loop, ``inverse_factorial`` is 1/(k - 1)!, then 1/k!.
     inverse_factorial, damping = 1.0, 0.0
-    # With beta < 0, the sign that the paper prints, damping is not part of the stress here.
+    # With beta < 0, the sign that the paper prints, the stress that decides on a release does not
+    # contain damping.
     if medium.damping_counts_for_release and medium.beta > 0.0:
         damping = medium.damping
     for k in range(1, top + 1):
@@ -189,7 +191,7 @@ def predict_releases(medium, motion, segments, prediction, first, last, now, ste
 
 @inlined_kernel
 def find_next_event(segments, prediction):
-    """Return the earliest predicted event. Its time is inf if there is none."""
+    """Return the earliest predicted event, or one at the time inf if no event is predicted."""
     block, earliest = -1, math.inf
     is_stick = is_law_kink = False
     # Releases, which are predicted for the two neighbours of each segment.
@@ -209,9 +211,9 @@ def find_next_event(segments, prediction):
 @kernel_function(inline=True)
 def interacts_with_mirror_image(medium, block):
     """Return True if an event of a block interacts with that of the block's mirror image."""
-    # Block 1 on the axis is its own mirror image, so that it has no second event. If the law has a
-    # kink, however, its event counts as well: it would change mirror images, whose slopes of
-    # friction are not stored.
+    # Block 1 on the axis is its own mirror image, so that there is no second event. If the law has
+    # a kink, however, an event of block 1 counts as well, because it would also change mirror
+    # images, whose slopes of friction are not stored.
     nearest = 2 if medium.law_kink is None else 1
     return medium.is_mirrored and nearest <= block <= 1 + EVENT_REACH
 
@@ -259,7 +261,7 @@ def list_due_releases(segments, prediction, latest, due):
 def predict_stick(coefficients, slopes, degree, end_velocity, now, step_end):
     """Return the time from ``now`` to ``step_end`` at which a block sticks, inf if it does not.
 
-    It sticks when its velocity, a polynomial of the time since the step began, falls below 0.
+    A block sticks when its velocity, a polynomial of the time since the step began, falls below 0.
 
     coefficients : those of the velocity
     slopes : scratch for the coefficients of its slope
@@ -379,15 +381,17 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
                 # Slip only grows, so that it does not come back to the kink.
                 is_out_of_reach = not is_before_kink
             else:
-                # The slip rate is beyond the kink at the end of the step or, if it is so only in
-                # between and turns back, its tangent at the start of the step is beyond at the end.
+                # A slip rate that reaches the kink is beyond the kink at the end of the step. If it
+                # has turned back until then, its tangent at the start of the step is beyond at the
+                # end.
                 tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
                 largest = max(sign * motion.end_velocity[i], sign * tangent_at_end)
                 is_out_of_reach = largest < sign * law_kink.argument_at_kink
             if is_out_of_reach:
                 continue
-            # The Taylor polynomial of the argument minus its value at the kink, times the sign. It
-            # rises to 0 at the kink. Its coefficient of power k is derivative k, divided by k!.
+            # Write the Taylor polynomial of the argument minus its value at the kink, times the
+            # sign. This polynomial rises to 0 at the kink. The coefficient of power k is derivative
+            # k, divided by k!.
             signed_inverse_factorial = sign
             for k in range(degree + 1):
                 coefficients[k] = signed_inverse_factorial * w[k + law_kink.argument_row, i]

@@ -50,8 +50,8 @@ def advance_derivatives(derivatives, lowest, last, top, s):
     derivatives : derivative k of the polynomial at index k, up to its degree ``top``
     lowest, last : orders of the first and the last derivative that are replaced
     """
-    # Horner's rule sums the Taylor series of each. It reads only this derivative and higher ones,
-    # which are not replaced yet.
+    # Horner's rule sums the Taylor series of each derivative, in ascending order. Each sum contains
+    # only this derivative and higher ones, which are not replaced yet.
     for m in range(lowest, last + 1):
         value = derivatives[top]
         for j in range(top - 1, m - 1, -1):
@@ -76,7 +76,8 @@ def velocity_at(w, i, top, s):
 def start_sliding(block_change, medium, motion, block, now, top):
     """Release a block at the time ``now`` since the step began, and return its friction.
 
-    block_change : receives the time derivatives of its slip at that time, from the second one on
+    block_change : receives the time derivatives of the block's slip at that time, from the second
+        one on
     top : order of the highest derivative of slip that the step keeps
     """
     w = motion.derivatives
@@ -88,9 +89,10 @@ def start_sliding(block_change, medium, motion, block, now, top):
     block_change[ACCELERATION] = force + damping * (w[VELOCITY, block - 1] + w[VELOCITY, block + 1])
     friction = begin_weakening(motion, medium.law_kink, block)
     block_change[ACCELERATION] -= friction
-    # Its higher time derivatives come only from the motion of the two neighbours: derivative k + 2
-    # follows from derivative k of their slip, and from derivative k + 1 because of the damping. The
-    # two above ``top`` only make the others more exact when they are advanced in time.
+    # The higher derivatives of the block's slip come only from the motion of the two neighbours:
+    # derivative k + 2 follows from derivative k of their slip, and from derivative k + 1 because of
+    # the damping. The two derivatives above ``top`` only make the others more exact when they are
+    # advanced in time.
     for k in range(1, top + 1):
         block_change[k + 2] = inverse_dx2 * (w[k, block - 1] + w[k, block + 1])
         # Row ``top`` is the last row of w.
@@ -221,9 +223,9 @@ def evaluate_difference(out, rows, m, top, s):
 def add_difference(motion, difference, first, last, block, now, step_end, top):
     """Add the change that an event makes to the motion of blocks first..last-1.
 
-    It changes their velocities at the end of the step, the slip that events add in this step
-    (``motion.event_slip``), and the time derivatives of their slip, which the lattice keeps for the
-    start of the step.
+    The event changes the velocities of these blocks at the end of the step, the slip that events
+    add in this step (``motion.event_slip``), and the time derivatives of slip, which the lattice
+    keeps for the start of the step.
 
     difference : the change of slip by the event, as time derivatives at the time of the event
     block, now : block and time of the event, since the step began
@@ -256,6 +258,8 @@ def change_of_loss_slope(medium, w, block, acceleration_change, now, top):
     The result is the sum of dv da over the pairs of the block and its two neighbours: dv is the
     difference of the two velocities, and da the change of the difference of the two accelerations.
     `take_event` multiplies it by 2 beta/dx, and doubles it on a mirrored lattice.
+
+    acceleration_change : change of the block's acceleration by the event
     """
     if medium.beta <= 0.0:
         return 0.0

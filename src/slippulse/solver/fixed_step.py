@@ -46,9 +46,10 @@ MIN_UNBIASED_CYCLE_STEPS = 50
 def combine_laws(laws: Sequence[type[Friction]]):
     """Return a compiled function that computes the friction of any of some laws.
 
-    Its arguments are the position of the law in the list, the slip since the release, the slip
-    velocity and the two parameters of the law. Kernels cannot choose from a list of functions.
-    Each compiled function therefore handles the first law, and calls another one for the rest.
+    The arguments of this function are the position of the law in the list, the slip since the
+    release, the slip velocity and the two parameters of the law. Kernels cannot choose from a list
+    of functions. Each compiled function therefore handles the first law, and calls another one for
+    the rest.
     """
     if not laws:
         return kernel_function()(lambda law, slip, velocity, parameter_1, parameter_2: 0.0)
@@ -127,6 +128,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
     end : time at its end
     """
     slip, velocity = motion.derivatives[SLIP], motion.derivatives[VELOCITY]
+    # The force per mass, which is the acceleration.
     force, tally = motion.derivatives[ACCELERATION], history.tally
     fastest = 0.0
     # The sum of friction times mean velocity, which is multiplied by dt and dx at the end.
@@ -148,7 +150,7 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
             friction = motion.law_factor[i] * law_friction
             force[i] -= friction
         after = before + dt * force[i]
-        # A block that has a mirror image counts twice.
+        # A block that has a mirror image counts twice. Block 1 on the axis has none.
         weight = 2.0 if medium.is_mirrored and i > 1 else 1.0
         if after <= 0.0:
             # A block that stops does no work in this step. Its kinetic energy is a separate loss.
@@ -173,7 +175,8 @@ def advance_blocks(medium, motion, sliding, history, dt, end, first, last):
 def viscous_loss(medium, velocity, dt, first, last):
     """Return the energy that damping and friction alpha v dissipate in a step.
 
-    It is computed with the velocities at the end of the step. Only blocks first..last-1 move.
+    The energy is computed with the velocities at the end of the step. Only blocks first..last-1
+    move.
     """
     if medium.beta <= 0.0 and medium.alpha == 0.0:
         return 0.0
@@ -231,7 +234,7 @@ def advance_fixed(medium, motion, sliding, history, recorder, limits):
         start = tally.time
         if start >= limits.end_time:
             return END_REACHED
-        # A front has come near an end of the lattice if the block at this distance from it slides.
+        # A front has come near an end of the lattice if the block EDGE_BLOCKS from the end slides.
         if sliding[size - EDGE_BLOCKS] or (sliding[EDGE_BLOCKS - 1] and not medium.is_mirrored):
             return LATTICE_TOO_SHORT
         dt, end = next_step(limits, start)

@@ -117,9 +117,9 @@ def switch_weakening(motion, law_kink, block):
 def add_weakening(w, k, first, last, block_of_column_0, motion, law_kink):
     """Add the contribution of piecewise linear friction to time derivative k of slip.
 
-    Friction falls by the slope times its argument, the slip or the slip rate. It is a part of the
-    acceleration, so that derivative k of slip contains the slope times derivative k - 2 of the
-    argument. This is derivative k - 2 of slip, or k - 1 if the argument is the slip rate.
+    Friction falls by the slope times its argument, the slip or the slip rate. Friction is a part of
+    the acceleration, so that derivative k of slip contains the slope times derivative k - 2 of the
+    argument. The latter is derivative k - 2 of slip, or k - 1 if the argument is the slip rate.
 
     w : time derivatives of slip (rows) of some blocks; column i is block i + block_of_column_0
     """

@@ -50,8 +50,8 @@ def source_digest(folder: Path = SOLVER_FOLDER) -> str:
 def cache_folder() -> Path:
     """Return the folder of compiled kernels, whose name contains the digest of their sources.
 
-    It lies in the folder given by SLIPPULSE_CACHE, otherwise by NUMBA_CACHE_DIR, otherwise in the
-    cache folder of the user.
+    The folder lies in the one given by SLIPPULSE_CACHE, otherwise by NUMBA_CACHE_DIR, otherwise in
+    the cache folder of the user.
     """
     given = os.environ.get("SLIPPULSE_CACHE") or os.environ.get("NUMBA_CACHE_DIR")
     user_cache = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")

@@ -174,8 +174,8 @@ class Lattice:
             new_array[..., old_blocks] = old_array
         distance = np.abs(np.arange(size) + self.first_block) * self.scene.dx
         nucleation_half_length = self.scene.friction.traits.nucleation_half_length
-        # The friction of a block is multiplied by its factor. It is 0 in the region around x = 0
-        # where a rupture may be nucleated without friction, and 1 elsewhere.
+        # The friction of a block is multiplied by a factor. This factor is 0 in the region around
+        # x = 0 where a rupture may be nucleated without friction, and 1 elsewhere.
         self.motion.law_factor[:] = distance >= nucleation_half_length
         # The new blocks are those before and behind the old ones.
         for first, last in ((0, old_blocks.start), (old_blocks.stop, size)):

@@ -198,14 +198,15 @@ def update_stresses(elastic, fields, first, last):
     differences between neighbours, divided by their distance h.
     """
     vx, vy, sxx, syy, sxy = fields
-    rows, dt_over_h = vy.shape[0], elastic.dt_over_h
-    # s_xx and s_yy on the rows.
-    for j in range(rows + 1):
+    cells, dt_over_h = vy.shape[0], elastic.dt_over_h
+    # s_xx and s_yy, which lie on the rows.
+    for j in range(cells + 1):
         direct, lateral = dt_over_h * elastic.direct[j], dt_over_h * elastic.lateral[j]
         normal = dt_over_h * elastic.normal[j]
-        # v_y half a cell above and below the row. An outer row has only one of the two.
+        # v_y half a cell above and below the row, with the weights 1. An outer row has only one of
+        # the two, with the weight 2, because the row has half the height of a cell.
         weight_above, weight_below = elastic.above[j], elastic.below[j]
-        above, below = vy[min(j, rows - 1), first:last], vy[max(j - 1, 0), first:last]
+        above, below = vy[min(j, cells - 1), first:last], vy[max(j - 1, 0), first:last]
         left, right = vx[j, first:last], vx[j, first + 1 : last + 1]
         s_xx, s_yy = sxx[j, first:last], syy[j, first:last]
         for i in range(s_xx.shape[0]):
@@ -218,7 +219,7 @@ def update_stresses(elastic, fields, first, last):
             sxx[j, 0] = -sxx[j, 1]
     # s_xy, which lies half a cell above row j.
     factor = dt_over_h * elastic.shear
-    for j in range(rows):
+    for j in range(cells):
         low, high = vx[j, first:last], vx[j + 1, first:last]
         left, right = vy[j, first - 1 : last - 1], vy[j, first:last]
         s_xy = sxy[j, first:last]
@@ -236,9 +237,9 @@ def update_velocities(elastic, fields, first, last):
     from ``moving_rows`` on have a v_x that is held.
     """
     vx, vy, sxx, syy, sxy = fields
-    rows, dt_over_h = vy.shape[0], elastic.dt_over_h
+    cells, dt_over_h = vy.shape[0], elastic.dt_over_h
     # v_y, which lies half a cell above row j.
-    for j in range(rows):
+    for j in range(cells):
         left, right = sxy[j, first:last], sxy[j, first + 1 : last + 1]
         low, high = syy[j, first:last], syy[j + 1, first:last]
         v = vy[j, first:last]
@@ -253,7 +254,7 @@ def update_velocities(elastic, fields, first, last):
     for j in range(1, elastic.moving_rows):
         weight_above, weight_below = elastic.above[j], elastic.below[j]
         left, right = sxx[j, first - 1 : last - 1], sxx[j, first:last]
-        low, high = sxy[j - 1, first:last], sxy[min(j, rows - 1), first:last]
+        low, high = sxy[j - 1, first:last], sxy[min(j, cells - 1), first:last]
         v = vx[j, first:last]
         for i in range(v.shape[0]):
             dsxx_dx = right[i] - left[i]

@@ -9,7 +9,10 @@ from .jit import kernel_function
 
 @kernel_function(inline=True)
 def find_edge(edges, edge_count, block):
-    """Return the position in the list of the first edge that is not smaller than ``block``."""
+    """Return the position in the list of the first edge that is not smaller than ``block``.
+
+    edges, edge_count : array with the list of edges, and its number of used elements
+    """
     position = 0
     while position < edge_count and edges[position] < block:
         position += 1

@@ -218,16 +218,17 @@ def extract_solution(lattice: Lattice, status: int) -> Solution:
 
 
 def _fill_missing_samples(lattice: Lattice) -> None:
-    """Fill in the samples after the kernel stopped, if it stopped because all blocks are stuck.
+    """Fill in the samples that the kernel has not taken, because all blocks stuck before.
 
-    The lattice is at rest at the times of these samples.
+    At their times the lattice is at rest in its final state. If the kernel did not stop early, it
+    has taken all samples, and nothing is changed.
     """
-    recorder, w = lattice.recorder, lattice.motion.derivatives
+    recorder, motion = lattice.recorder, lattice.motion
     missing_times = slice(lattice.tally.samples_taken, None)
     has_block = recorder.blocks >= 0
     sampled_blocks = recorder.blocks[has_block]
-    recorder.slip[missing_times, has_block] = w[SLIP, sampled_blocks]
-    recorder.velocity[missing_times, has_block] = w[VELOCITY, sampled_blocks]
+    recorder.slip[missing_times, has_block] = motion.derivatives[SLIP, sampled_blocks]
+    recorder.velocity[missing_times, has_block] = motion.derivatives[VELOCITY, sampled_blocks]
 
 
 def solve_on_lattice(

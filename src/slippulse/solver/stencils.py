@@ -51,8 +51,8 @@ def compute_accelerations(w, strain, tau, first, last, inverse_dx, leaf, damping
 def next_derivative(w, k, i, inverse_dx2, leaf, damping):
     """Return time derivative k of the slip of block i, from the derivatives k - 2 and k - 1.
 
-    It follows from the equation of motion, which is differentiated k - 2 times. Here ``leaf`` is
-    the stiffness of the leaf springs, and ``damping`` is beta/dx^2.
+    The equation of motion, differentiated k - 2 times, gives this derivative. ``leaf`` is the
+    stiffness of the leaf springs, and ``damping`` is beta/dx^2.
     """
     elastic = inverse_dx2 * second_difference(w, k - 2, i) - leaf * w[k - 2, i]
     return elastic + damping * second_difference(w, k - 1, i) if damping != 0.0 else elastic

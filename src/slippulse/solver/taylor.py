@@ -91,7 +91,7 @@ def record_stick(history, block, time):
 def take_samples(recorder, motion, tally, start, end, order):
     """Record slip and velocity at all sample times up to ``end`` that are not recorded yet.
 
-    They are computed from the Taylor polynomials around ``start``, the time at which the step
+    Both are computed from the Taylor polynomials around ``start``, the time at which the step
     began. The polynomial of slip has the degree ``order`` + 1, and that of velocity ``order``.
     """
     times, blocks = recorder.times, recorder.blocks
@@ -412,6 +412,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
 
     Returns the largest velocity at the ends and the middles of the segments, which shows a blow-up.
 
+    order : degree of the Taylor polynomial of the velocity
     h : duration of the step
     """
     w, event_slip = motion.derivatives, motion.event_slip
@@ -425,15 +426,16 @@ def finish_step(medium, motion, scratch, tally, order, h):
         tally.block_updates += last - first
         middle = (first + last) // 2
         fastest = max(fastest, w[VELOCITY, first], w[VELOCITY, middle], w[VELOCITY, last - 1])
-    # Add the slip by events of the step. It is cleared at once, because a block may be in the reach
-    # of several events.
+    # Add the slip by events of the step. This slip is cleared at once, because a block may be in
+    # the reach of several events, and would get it more than once.
     for q in range(step_events.count.n):
         for i in range(step_events.first[q], step_events.last[q]):
             w[SLIP, i] += event_slip[i]
             w[SLIP_INCREMENT, i] += event_slip[i]
             event_slip[i] = 0.0
-    # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment. Before
-    # block 1 of a mirrored lattice it is that of the mirror image, and is set below.
+    # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment. On a
+    # mirrored lattice, the block before block 1 has the strain of a mirror image, which is set
+    # below.
     first_bond = 1 if medium.is_mirrored else 0
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]

@@ -81,11 +81,12 @@ class ArrestingCrack(ExplainsRemovedNames):
     def _entry_of(self, position: float) -> float:
         """Return where the wave that meets the left front at a position has entered the rupture.
 
-        The wave runs to the left. So it entered farther right, through a fast front. The integral
-        of tau between the two positions is 0.
+        The wave runs to the left. So it entered farther right, through one of the fast fronts,
+        which are known from slow_start to end. The integral of tau between the two positions is 0.
         """
         integral_from_position_to = partial(integral, self.prestress, position)
-        # The curve of the fast fronts ends at self.end.
+        # The search stays a little inside of the right end of the fast fronts. At its left end, the
+        # integral is negative, because tau < 0 between the position and slow_start.
         last_entry = self.end - 1e-9
         if integral_from_position_to(last_entry) <= 0.0:
             limit = f"x_minus = {self.balance_position:.10g}, which the left front approaches"
@@ -139,14 +140,14 @@ class ArrestingCrack(ExplainsRemovedNames):
     def peak_velocity(self) -> float:
         """Largest slip velocity of the pulse that runs to the right, far from the nucleation.
 
-        It is half the integral of the positive pre-stress.
+        This velocity is half the integral of the positive pre-stress.
         """
         return 0.5 * integral(self.prestress, self.slow_start, self.end)
 
     def far_pulse(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the pulse that runs to the right, far from the nucleation.
 
-        There it is a wave that keeps its shape: du/dt depends on x - t alone.
+        Far away the pulse is a wave that keeps its shape: du/dt depends on x - t alone.
 
         Returns
         -------

@@ -156,7 +156,7 @@ def _growth_and_wavenumber(
 def _reason_for_no_pulse(gamma: float, speed: float, rate_strengthening: float) -> str:
     """Return the error message for a pulse that cannot be computed.
 
-    It names the rate strengthening if this may be too large, and the speed otherwise.
+    The message names the rate strengthening if its value may be too large, and the speed otherwise.
     """
     critical = critical_rate_strengthening(gamma, speed)
     # The critical value is exact without damping. Since damping changes it, rate strengthening is
@@ -220,8 +220,8 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:
     """Return the paper's estimate of the transition under a displacement boundary.
 
-    It neglects the elastic coupling of neighbouring points, and the higher pre-stress at the
-    nucleation. Source: section III B. Raises ValueError: outside the domain.
+    The estimate neglects the elastic coupling of neighbouring points, and the higher pre-stress at
+    the nucleation. Source: section III B. Raises ValueError: outside the domain.
 
     Parameters
     ----------
@@ -244,8 +244,9 @@ def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, flo
 def paper_transition_stress(prestress: Prestress) -> tuple[float, float]:
     """Return the paper's estimate of the transition under a stress boundary.
 
-    It assumes that both fronts run at the wave speed, until the left one arrives at the balance
-    position x_minus. Source: section III C. Raises the same errors as `prestress_balance_position`.
+    The estimate assumes that both fronts run at the wave speed, until the left one arrives at the
+    balance position x_minus. Source: section III C. Raises the same errors as
+    `prestress_balance_position`.
 
     Parameters
     ----------

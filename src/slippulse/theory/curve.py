@@ -39,10 +39,10 @@ NODES, WEIGHTS = legendre.leggauss(NODE_COUNT)
 # They give its Legendre series, and the series of its integral from the left end.
 NODES_TO_SERIES = np.linalg.inv(legendre.legvander(NODES, NODE_COUNT - 1))
 NODES_TO_INTEGRAL_SERIES = legendre.legint(NODES_TO_SERIES, lbnd=-1.0)
-# They give this integral, and the derivative by s, at the nodes.
+# These matrices give this integral, and the derivative by s, at the nodes.
 NODES_TO_INTEGRALS = legendre.legvander(NODES, NODE_COUNT) @ NODES_TO_INTEGRAL_SERIES
 NODES_TO_DERIVATIVES = legendre.legvander(NODES, NODE_COUNT - 2) @ legendre.legder(NODES_TO_SERIES)
-# They give the values at both ends of the panel.
+# This matrix gives the values of the function at both ends of the panel.
 NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
 # A curve of at most MAX_EAGER_PANELS panels computes the polynomials of all its panels at once. A
 # longer curve computes only the requested polynomials, because a slow front needs only a few at
@@ -58,8 +58,8 @@ PANEL_FIELDS = ("x", "time", "t_plus_x", "t_minus_x", "source")
 def power_basis(count: int) -> np.ndarray:
     """Return the matrix from coefficients of a Legendre series to coefficients of powers.
 
-    Both have ``count`` coefficients. Row m belongs to the power m, and column k to the Legendre
-    polynomial of degree k.
+    The series and the powers have ``count`` coefficients each. Row m belongs to the power m, and
+    column k to the Legendre polynomial of degree k.
     """
     columns = []
     for degree, unit in enumerate(np.eye(count)):
@@ -197,7 +197,7 @@ class Curve:
         joined.panels, joined.restarts = self.panels + other.panels, ((), ())
         for name in ("x", "time", "source", "t_plus_x", "t_minus_x", "x_ends", "time_ends"):
             setattr(joined, name, np.concatenate([getattr(self, name), getattr(other, name)]))
-        # Both curves have the edge where they meet. It is taken from the other one.
+        # Both curves have the edge where they meet. Of the two, that of the other curve is kept.
         joined.edges = np.append(self.edges[:-1], other.edges)
         joined.edge_times = np.append(self.edge_times[:-1], other.edge_times)
         return joined
@@ -208,7 +208,7 @@ class Curve:
         Restarts are the positions where a slow front became faster than the waves again.
         """
         curve = copy(self)
-        # This cached property depends on the restarts. The other ones remain valid.
+        # The cached property _lowest_levels depends on the restarts. All other ones remain valid.
         curve.__dict__.pop("_lowest_levels", None)
         curve.restarts = restarts
         return curve
@@ -237,7 +237,7 @@ class Curve:
             return self.all_coefficients.take(numbers, axis=-1)
         node_values = []
         for number in numbers.tolist():
-            # This is the inverse of `polynomial_numbers`.
+            # Find the field and the panel: the inverse of `polynomial_numbers`.
             field, panel = divmod(number, panel_count)
             node_values.append(getattr(self, PANEL_FIELDS[field])[panel])
         return NODES_TO_POWERS @ np.reshape(node_values, (-1, NODE_COUNT)).T
@@ -362,7 +362,7 @@ class Curve:
 
         Each field (such as T + x) is a polynomial of s on its panel, where it is monotonic. numbers
         says which field and which panel (see `polynomial_numbers`). Newton's method starts from
-        linear interpolation between the ends of the panel. Its steps do not leave the panel.
+        linear interpolation between the ends of the panel. The steps do not leave the panel.
         """
         at_left, at_right = self.end_values[:, numbers]
         rise = at_right - at_left

@@ -90,9 +90,9 @@ class FastFront:
     def _set_features(self) -> None:
         """Set ``features`` and ``narrow_features``: positions in all and in narrow Gaussians.
 
-        They are the centre of each Gaussian and positions at fixed distances from it, in widths. A
-        panel begins at each of them. Otherwise a narrow Gaussian could lie unnoticed between two
-        nodes of a panel.
+        These positions are the centre of each Gaussian and positions at fixed distances from it, in
+        widths. A panel begins at each of them. Otherwise a narrow Gaussian could lie unnoticed
+        between two nodes of a panel.
         """
         centres, widths = np.array(self.prestress.gaussians).reshape(-1, 2).T
         # The axes are [Gaussian, feature].
@@ -121,9 +121,9 @@ class FastFront:
     def marks(self) -> list[float]:
         """Positions from which waves come, because the motion of the front changes there.
 
-        These are the positions where two pieces (intervals of smooth pre-stress of one sign) meet.
-        Only the kinks of a table of points are left out: the pre-stress is continuous there, and
-        has the same sign on both sides.
+        These are the positions where two pieces meet, which are intervals of smooth pre-stress
+        either above or below 0. Only the kinks of a table of points are left out: the pre-stress is
+        continuous there, and has the same sign on both sides.
         """
         marks = []
         for piece, next_piece in pairwise(self.pieces):
@@ -166,8 +166,9 @@ class FastFront:
     def panels_to_right(self, start: Point, stop: float, until: float) -> tuple[list[Panel], Point]:
         """Return the panels of a front that runs right from a point, and the point where they end.
 
-        They end where tau turns negative, at the position ``stop``, or after the time ``until``. In
-        the last case they go on to the end of the piece of pre-stress that the front is in.
+        The panels end where tau turns negative, at the position ``stop``, or after the time
+        ``until``. In the last case they go on to the end of the piece of pre-stress that the front
+        is in.
         """
         x, time = start
         panels: list[Panel] = []

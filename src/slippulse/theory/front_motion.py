@@ -63,12 +63,12 @@ def steady_front(speed: float, damping_ratio: float, springs: float, release: st
         states.append(substep @ states[-1])
     slip_of_block_0 = np.array([state[0] for state in states])
     velocity_of_block_0 = np.array([state[count] for state in states])
-    # The stress on the stuck block ahead, for the pre-stress 1. It is pulled by block 0 and, under
-    # rule "total", also dragged along by the damping force.
+    # The stress on the stuck block ahead, for the pre-stress 1. This block is pulled by block 0
+    # and, under rule "total", also dragged along by the damping force.
     damping_in_stress = damping_ratio if release == "total" else 0.0
     stress_ahead = 1.0 + slip_of_block_0 + damping_in_stress * velocity_of_block_0
     # All stresses are proportional to the pre-stress, and this one is 1 at the last time, the
-    # release. This determines the pre-stress.
+    # release. This condition determines the pre-stress.
     prestress = 1.0 / stress_ahead[-1]
     stays_stuck = np.all(prestress * stress_ahead[:-1] < 1.0)
     slides = np.all(velocity_of_block_0[1:] > 0.0)

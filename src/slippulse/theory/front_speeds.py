@@ -1,9 +1,9 @@
 """Front speeds on the damped lattice, without leaf springs.
 
-They follow from a relation between front speed and pre-stress (`wiener_hopf`). It assumes that the
-sliding part behind the front is infinitely long. A pulse is finite, but this changes its front
-speed only if it is hardly wider than a layer of damped waves and lattice waves at the front. This
-layer is a few blocks wide, unless the damping ratio is large.
+The speeds follow from a relation between front speed and pre-stress (`wiener_hopf`). This relation
+assumes that the sliding part behind the front is infinitely long. A pulse is finite, but this
+changes its front speed only if it is hardly wider than a layer of damped waves and lattice waves at
+the front. This layer is a few blocks wide, unless the damping ratio is large.
 """
 
 from typing import NamedTuple
@@ -156,7 +156,7 @@ def slowness_nearly_one(
 ) -> np.ndarray:
     """Return 1/v of fronts into pre-stress tau next to 1, which are very fast.
 
-    With b = beta/dx it solves -ln tau = b/v + 1/(2 v^2) under rule "total", and
+    With b = beta/dx, 1/v solves -ln tau = b/v + 1/(2 v^2) under rule "total", and
     -ln tau = 1/(2 v^2) under rule "elastic". Terms in 1/v^3 are neglected.
     """
     minus_log_tau = -np.log(tau)
@@ -179,7 +179,8 @@ def log_prestress_in_chunks(
 def first_guess(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
     """Return an estimate of ln(v - 1), with which the search for the front speed v starts.
 
-    It is interpolated between weak and strong damping, for which the speed has a simple formula.
+    The estimate is interpolated between weak and strong damping, for which the speed has a simple
+    formula.
     """
     b, distance_to_1 = damping_ratio, 1.0 - tau
     # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).
@@ -208,7 +209,9 @@ def speeds_into(
     def excess_over_required(log_excess: np.ndarray, fronts: np.ndarray) -> np.ndarray:
         """Return ln(tau/(1 - tau)) at ln(v - 1) = log_excess, minus the required value.
 
-        fronts : numbers of the fronts to which the elements of log_excess belong
+        The search calls this function with only those fronts whose speed is not found yet.
+
+        fronts : indices of these fronts, one for each element of log_excess
         """
         log_tau = front_law.log_prestress(log_excess, front_law.damping_ratios[fronts])
         # 1 - tau may be rounded to 0. It is then replaced by a number that is smaller than any

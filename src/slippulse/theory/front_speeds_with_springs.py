@@ -42,10 +42,10 @@ def lattice_front_speed(
     """Return the exact front speed with leaf springs, damping and drag -alpha du/dt.
 
     There is a least pre-stress, below which no front outruns the waves. (The shortest waves have
-    the phase velocity sqrt(4 + gamma dx^2)/pi. Fronts behind which slip runs away do not count; it
-    may run away if friction weakens with slip velocity.) With strong damping and rule "total", two
-    speeds belong to a pre-stress slightly above it. The higher one is returned, which grows with
-    the pre-stress.
+    the phase velocity sqrt(4 + gamma dx^2)/pi. Fronts behind which slip runs away do not count;
+    slip may run away if friction weakens with slip velocity.) With strong damping and rule "total",
+    two speeds belong to a pre-stress slightly above it. The higher one is returned, which grows
+    with the pre-stress.
     Source: Wiener-Hopf factorisation of the lattice equation with leaf springs (`wiener_hopf`). It
     has a closed form without damping, and tends to `front_speed` as gamma dx^2 -> 0. Blocks that
     stick behind the front are neglected. The relative error is below 1e-6 next to tau_0 = 1 for
@@ -149,7 +149,7 @@ def continuum_front_speed(tau0: float, gamma: float, beta: float) -> float:
     check_number("beta", beta, above=0.0)
     # gamma beta^2 (1 - tau)^2/tau^2, by which leaf springs slow the front.
     slowing = (np.sqrt(float(gamma)) * beta * (1.0 - tau0) / tau0) ** 2
-    # This condition is v > 1.
+    # This condition is v > 1: the front must outrun the waves.
     if not slowing < tau0 / (1.0 - tau0):
         raise ValueError(
             f"tau0: {tau0!r}; allowed: a higher pre-stress, at which the front is faster than"
@@ -180,13 +180,16 @@ def _least_prestress(tau0: float, front_law: FrontLaw) -> tuple[float, float]:
 def _slowest_log_excess(front_law: FrontLaw) -> float:
     """Return ln(v - 1) of the slowest front that outruns all waves and behind which slip is stable.
 
-    The result is MIN_LOG_EXCESS if this front is not faster than the wave speed 1.
+    More exactly, v is the lower limit of the speeds of such fronts. If this is the wave speed 1,
+    the result is MIN_LOG_EXCESS in place of ln 0.
     """
     # The phase velocity of the shortest waves on the lattice.
     short_wave_speed = np.sqrt(4.0 + front_law.gamma_dx2) / np.pi
     slowest_speed = max(1.0, short_wave_speed)
     if front_law.alpha_dx < 0.0:
-        # Slip runs away behind a front of this inverse speed, or a slower front.
+        # Far behind a steady front, the slip U obeys (v^2 - 1) U'' - alpha v U' + gamma U = tau_0.
+        # If alpha^2 v^2 < 4 gamma (v^2 - 1), U oscillates, so that blocks stick. Otherwise slip
+        # runs away. The two sides are equal at this inverse speed.
         runaway_slowness = np.sqrt(1.0 - 0.25 * front_law.alpha_dx**2 / front_law.gamma_dx2)
         slowest_speed = max(slowest_speed, SPEED_MARGIN / runaway_slowness)
     return float(np.log(slowest_speed - 1.0)) if slowest_speed > 1.0 else MIN_LOG_EXCESS

@@ -84,9 +84,9 @@ class Knots(NamedTuple):
     def positions_to_recheck(self) -> np.ndarray:
         """One position in each interval in which the edge may become slower than the waves.
 
-        This is where the size of its slope exceeds 1. It is possible if the steepest slope at the
-        two ends exceeds 1 when the change of the slope between the ends is added. The position is
-        not in the middle, which has been checked before.
+        The edge is slower than the waves where the size of its slope exceeds 1. This is possible if
+        the steepest slope at the two ends exceeds 1 when the change of the slope between the ends
+        is added. The position is not in the middle, which has been checked before.
         """
         k = np.arange(self.x.size - 1)
         steepest_end = np.abs([self.slope[:-1], self.slope[1:]]).max(axis=0)
@@ -114,7 +114,7 @@ class Knots(NamedTuple):
     def has_jump(self, k: np.ndarray) -> np.ndarray:
         """Return a mask of the intervals in which the edge jumps.
 
-        It jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
+        The edge jumps if it takes longer than a wave, whose speed is 1, from one knot to the other,
         although it is not known to be slow there. Its speed must be known at both knots, which it
         is not at a BRIEF_SLIP (a knot that sticks too soon after its release). A change from faster
         to slower than the waves counts as a jump.
@@ -130,11 +130,12 @@ class Knots(NamedTuple):
     def ends_before_jumps(self, k: np.ndarray) -> np.ndarray:
         """Return, for each interval k in which the edge jumps, the number of the knot before it.
 
-        This is the end of the interval that the edge reaches faster than the waves.
+        The knot before the jump is the end of the interval that the edge reaches faster than the
+        waves.
         """
         left_kind, right_kind = self.kind[k], self.kind[k + 1]
-        # If both knots are of one kind, it is the knot that sticks first. Otherwise it is the one
-        # of the kind FASTER_THAN_WAVES.
+        # If both knots are of one kind, the knot that sticks first is before the jump. Otherwise
+        # the one of the kind FASTER_THAN_WAVES is.
         right_sticks_first = self.stick[k] >= self.stick[k + 1]
         is_right_knot = np.where(
             left_kind == right_kind, right_sticks_first, right_kind == FASTER_THAN_WAVES
@@ -155,10 +156,10 @@ class Knots(NamedTuple):
     def predicts_middle(self, k: np.ndarray, middle: "Knots") -> np.ndarray:
         """Return a mask of the intervals k in which interpolation predicts a knot in the middle.
 
-        ``middle`` has one knot for each interval, in its middle. It must be of the same kind as
-        both ends of the interval. If this kind is FASTER_THAN_WAVES, the interpolating cubic must
-        also predict the stick time and the slope of the middle. For other kinds the cubic is not
-        used.
+        ``middle`` has one knot for each interval, in its middle. This knot must be of the same kind
+        as both ends of the interval. If this kind is FASTER_THAN_WAVES, the interpolating cubic
+        must also predict the stick time and the slope of the middle. For other kinds the cubic is
+        not used.
         """
         is_one_kind = (self.kind[k] == middle.kind) & (self.kind[k + 1] == middle.kind)
         length = 2.0 * (middle.x - self.x[k])

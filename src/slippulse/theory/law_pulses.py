@@ -140,8 +140,8 @@ class _LinearSlip:
     def creeps_forever(self) -> bool:
         """Return True if the slip approaches the static slip from below, without end.
 
-        This needs three conditions: no exponential grows with the distance from the front or
-        oscillates, and the one that decays most slowly is negative.
+        The slip does so under three conditions: no exponential grows with the distance from the
+        front or oscillates, and the one that decays most slowly is negative.
         """
         # Of the exponentials, the first one grows, and the second one decays most slowly.
         growing, *decaying = np.abs(self.amplitudes)
@@ -202,7 +202,8 @@ def weakening_pulse(tau0: float, gamma: float, beta: float, weakening: float) ->
     ----------
     tau0, gamma : floats, pre-stress, in (0, 1), and elasticity ratio, > 0
     beta : float, damping, > 0 (H times the wave speed)
-    weakening : float, slip d_c during which friction falls from 1 to 0 (U), > 0 and < 1/gamma
+    weakening : float, slip d_c (in units of U) during which friction falls from 1 to 0, > 0 and
+        < 1/gamma
 
     Returns
     -------

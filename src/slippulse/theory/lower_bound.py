@@ -124,7 +124,7 @@ def stays_positive(part: Part, x: np.ndarray, velocity: np.ndarray, time: float)
     # The points of the curve where the past of a begins, and where the past of b ends.
     ends = part.curve.crossings(y=0.5 * (a + b), xi=time - a, eta=time + b)
     bound = _lower_bound(part, x=x, velocity=velocity, time=time, ends=ends)
-    return (bound > 0.0) | _has_positive_integrand(part, x=x, time=time, ends=ends)
+    return (bound > 0.0) | _velocity_is_surely_positive(part, x=x, time=time, ends=ends)
 
 
 def _lower_bound(
@@ -168,14 +168,15 @@ def _lower_bound(
     return np.where(c_slides, bound, -np.inf)
 
 
-def _has_positive_integrand(
+def _velocity_is_surely_positive(
     part: Part, x: np.ndarray, time: float, ends: tuple[Crossing, Crossing]
 ) -> np.ndarray:
     """Return a mask of the pairs of positions a and b between which du/dt is surely positive.
 
-    There du/dt is an integral of tau and the Bessel function J0 over the past. It is positive if
-    all pre-stress in the past of a and b is positive, and if the largest argument of J0,
-    sqrt(k d_xi d_eta), is below its first zero. The arguments are those of `_lower_bound`.
+    Between a and b, du/dt is an integral of tau times the Bessel function J0 over the past. This
+    integral is positive if all pre-stress in the past of a and b is positive, and if the largest
+    argument of J0, sqrt(k d_xi d_eta), is below its first zero. The arguments are those of
+    `_lower_bound`.
     """
     a, b = x
     a_begins, b_ends = ends
@@ -194,8 +195,9 @@ def _has_positive_integrand(
 def _integral_outside_past_of_c(density: np.ndarray, past: PastOnCurve) -> np.ndarray:
     """Return the integral of a density along the curve, for each pair of positions a and b.
 
-    It covers the past of a and of b, except the past of the point c, from which waves arrive at
-    both. The density is a function per unit of the parameter of each panel, given at the nodes.
+    The integral covers the past of a and of b, except the past of the point c, from which waves
+    arrive at both. The density is a function per unit of the parameter of each panel, given at the
+    nodes.
     """
     to_a_begins, to_c_begins, to_c_ends, to_b_ends = _integrals_from_left_end(density, past)
     return to_c_begins - to_a_begins + to_b_ends - to_c_ends

@@ -64,8 +64,8 @@ def continued_prestress(prestress: Prestress, background: Interval, x: np.ndarra
 def split_into_pieces(prestress: Prestress, value: float = 0.0) -> list[Piece]:
     """Return intervals on which the pre-stress is smooth and on one side of a value, in order.
 
-    They are cut where the background changes its slope or jumps, and where the pre-stress crosses
-    the value. A piece has no length where the pre-stress only touches the value.
+    The intervals are cut where the background changes its slope or jumps, and where the pre-stress
+    crosses the value. A piece has no length where the pre-stress only touches the value.
     """
     # Sample positions, which are dense enough to show every sign change in a Gaussian. Between the
     # Gaussians the pre-stress is linear.

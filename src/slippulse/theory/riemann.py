@@ -78,7 +78,7 @@ class StaticValues(NamedTuple):
 class StaticSolution:
     """A static slip p under the pre-stress: p'' - gamma p + tau = 0 along a curve.
 
-    This equation has many solutions, and any of them gives the same slip u. For gamma > 0 the
+    The equation for p has many solutions, and any of them gives the same slip u. For gamma > 0 the
     bounded one is used, tau convolved with exp(-sqrt(gamma) |x|)/(2 sqrt(gamma)). Beyond the curve,
     tau keeps its outermost values.
     """

@@ -132,9 +132,9 @@ class Rupture(ExplainsRemovedNames):
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
         """Return the connected part of the rupture behind both fronts of a stretch, up to a time.
 
-        Its marks are all positions where the motion of a front may change suddenly: the nucleation
-        point of most scenes, x = 0, changes of the pre-stress, points where a slow front became
-        fast again (restarts) or where two fronts met (joins), and the ends of both fronts.
+        The marks of the part are all positions where the motion of a front may change suddenly: the
+        nucleation point of most scenes, x = 0, changes of the pre-stress, points where a slow front
+        became fast again (restarts) or where two fronts met (joins), and the ends of both fronts.
         """
         curve, law = stretch.curve(), self.law
         changes_of_prestress = [*law.marks, *law.narrow_features]
@@ -295,7 +295,7 @@ class Rupture(ExplainsRemovedNames):
     def transition(self) -> ExactTransition:
         """T_trans and L_trans of the transition from crack to pulse, which is the first stick.
 
-        Both are NaN if ``first_stick`` is None.
+        T_trans and L_trans are NaN if ``first_stick`` is None.
         """
         stick = self.first_stick
         if stick is None:
@@ -466,8 +466,8 @@ class Rupture(ExplainsRemovedNames):
     def _nan_where_unknown(self, x: np.ndarray, time: np.ndarray) -> np.ndarray:
         """Return times of events at positions x; NaN if an event is not known to happen.
 
-        It is not known to happen after the duration, or beyond the horizon, which is the time from
-        which on nothing is known at x.
+        Events are not known to happen after the duration, or beyond the horizon, which is the time
+        from which on nothing is known at x.
         """
         is_before_end = time <= self._latest_time
         is_known = is_before_end & ~self._is_beyond_horizon(x, time)
@@ -487,8 +487,8 @@ class Rupture(ExplainsRemovedNames):
         limits = [Limit(point.x, point.time, reason) for point, reason in self._unknown_points]
         for part in self._solved_parts:
             limits_of_part = [Limit(point.x, point.time, SLOW_EDGE) for point in part.slow_points()]
-            # Beyond the horizon the solution is not valid. It is the time at which, for a position
-            # x, the first wave arrives from one of the limits that have been found so far.
+            # Beyond the horizon the solution is not valid. The horizon is the time at which, for a
+            # position x, the first wave arrives from one of the limits that have been found so far.
             horizon = partial(_earliest_wave_arrival, limits + limits_of_part)
             for point in part.falling_slip(horizon):
                 limits_of_part.append(Limit(point.x, point.time, FALLING_SLIP))

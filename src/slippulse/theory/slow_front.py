@@ -29,12 +29,12 @@ where the decay factor E and the stiffness k are those of `riemann`. X is comput
 the entry e instead of the time, because this function remains smooth where the front stops (there
 dX/de = 0).
 
-The front grows by one panel at a time (`SlowFront.next_panel`). Its entries form a chunk, which is
-part of one panel of the known curve, from right to left. `FreeBoundary` is the equation above at
-the nodes of the chunk. Newton's method solves it for the positions X. The chunk is halved if the
-solution is not resolved. It is shortened where the front stops, or where it reaches the end of the
-negative pre-stress, which is called the mark. The new panel belongs to the known curve from then
-on.
+The front grows by one panel at a time (`SlowFront.next_panel`). The entries of this panel form a
+chunk, which is part of one panel of the known curve, from right to left. `FreeBoundary` is the
+equation above at the nodes of the chunk. Newton's method solves it for the positions X. The chunk
+is halved if the solution is not resolved. It is shortened where the front stops, or where it
+reaches the end of the negative pre-stress, which is called the mark. The new panel belongs to the
+known curve from then on.
 """
 
 from dataclasses import dataclass
@@ -138,7 +138,7 @@ class Entry(NamedTuple):
     skipped_motion: float = 0.0
 
 
-# This stands for an entry if no further entry moves the front on.
+# The result of a search for an entry if no further entry moves the front on.
 NO_ENTRY = Entry(panel=-1, s=1.0)
 
 
@@ -148,14 +148,14 @@ class SkippedEntries(NamedTuple):
     skips_any is False if there are none, and skips_all is True if they go on to the left end of the
     panel. last_s is the parameter of the last one. total_motion is the distance that the front
     moves by all entries that were skipped up to this one, on this and on other panels.
-    next_moves_on is False if the entries after them move the front back.
+    next_moves_back is True if the entries after them move the front back, to the left.
     """
 
     skips_any: bool
     skips_all: bool
     last_s: float
     total_motion: float
-    next_moves_on: bool
+    next_moves_back: bool
 
 
 class Advance(NamedTuple):
@@ -223,8 +223,8 @@ def _runs_back(x: np.ndarray) -> bool:
     x has the positions of the front at the nodes of the chunk, whose parameter s runs from -1 to 1.
     """
     dx_ds = NODES_TO_DERIVATIVES @ x
-    # From the start, s = -1, to the first root of dx/ds (or the end, s = 1) dx/ds has one sign. It
-    # is examined in the middle between them.
+    # From the start, s = -1, to the first root of dx/ds (or the end, s = 1) dx/ds has one sign.
+    # This sign is examined in the middle between them.
     first_root = min(_roots_on_chunk(dx_ds, 1.0), default=1.0)
     middle = 0.5 * (-1.0 + first_root)
     return bool(legendre.legval(middle, NODES_TO_SERIES @ dx_ds) < 0.0)
@@ -251,10 +251,10 @@ def _roots_on_chunk(values: np.ndarray, largest_s: float) -> list[float]:
 class FreeBoundary:
     """The equation of the free boundary on one chunk, for the positions X of the front.
 
-    It is one integral for each node of the chunk, from an entry to the front. Arrays have one row
-    for each of these integrals, and one column for each node of the curve. The first columns are
-    those of the known curve, from the panel of the entries on, and the last ones those of the new
-    panel.
+    The equation consists of one integral for each node of the chunk, from an entry to the front.
+    Arrays have one row for each of these integrals, and one column for each node of the curve. The
+    first columns are those of the known curve, from the panel of the entries on, and the last ones
+    those of the new panel.
     """
 
     def __init__(self, front: "SlowFront", chunk: Chunk) -> None:
@@ -291,7 +291,8 @@ class FreeBoundary:
         """
         # The integrals of tau from the end of the known curve, x0, to the positions.
         prestress_integral, tau = self.crossed_by_front(x)
-        # Without leaf springs and drag the kernel is 1.
+        # Without leaf springs and drag the kernel is 1, and each integral depends on its own
+        # position only.
         if self.front.stiffness == self.front.alpha == 0.0:
             if not np.all(tau < 0.0):
                 return None
@@ -474,13 +475,17 @@ class SlowFront:
         return continued_prestress(self.prestress, self.background, x)
 
     def next_entry(self, last_entry_x: float, negligible: float) -> Entry | None:
-        """Return the entry on the curve from which the wave comes that moves the front next.
+        """Return the entry on the curve from which the front is continued.
 
-        It follows the last entry, at the position last_entry_x, along the curve from right to left.
-        Entries are skipped as long as all of them together move the front by no more than the
-        fraction ``negligible`` of the size of the rupture. NO_ENTRY is returned if the entries
-        after the skipped ones move the front back, or if all further entries are skipped. None is
-        returned if the wave comes from beyond the left end of the curve.
+        The search begins at the last entry, at the position last_entry_x, and goes along the curve
+        from right to left. Entries are skipped as long as all of them together move the front by no
+        more than the fraction ``negligible`` of the size of the rupture. The front is continued
+        from the last skipped entry, or from the first entry if none is skipped, so that no entry is
+        left out.
+
+        NO_ENTRY is returned if the entries after the skipped ones move the front back, or if all
+        further entries are skipped. None is returned if the next wave comes from beyond the left
+        end of the curve, where nothing is known.
         """
         # The entry could also be found from its value of T - x. But where the pre-stress is nearly
         # 0, T - x is constant to rounding, and the search would fail.
@@ -490,7 +495,8 @@ class SlowFront:
             return None
         skipped_motion, s = 0.0, first.s
         for panel in range(first.panel, -1, -1):
-            # If the slow front itself made this panel, the entry is found in another way.
+            # No wave enters the rupture on a panel of a slow front, because waves overtake it. The
+            # next wave comes from farther left, and is traced back to the curve.
             if self.is_slow_to_right(panel):
                 return self.entry_behind_slow_front()
             skipped = self.entries_to_skip(Entry(panel, s), skipped_motion, negligible)
@@ -503,8 +509,7 @@ class SlowFront:
             is_first_skipped = skipped.skips_any or panel < first.panel
             if not is_first_skipped:
                 return first
-            if not skipped.next_moves_on:
-                # The entries after the skipped ones would move the front back.
+            if skipped.next_moves_back:
                 return NO_ENTRY
             # The motion must be positive, since a motion of 0 means that nothing was skipped.
             min_motion = 0.1 * ROUNDING_MOTION * self.size
@@ -532,13 +537,14 @@ class SlowFront:
     ) -> SkippedEntries:
         """Return which entries are skipped on a panel, from a given one to the left.
 
-        A wave that entered the rupture at an entry later moves the front. Entries are skipped as
-        long as all of them together move it by no more than the fraction ``negligible`` of the size
+        The wave of each entry moves the front when it arrives there. Entries are skipped as long as
+        all of them together move the front by no more than the fraction ``negligible`` of the size
         of the rupture, because panels do not resolve such small motions. skipped_motion is the
         motion by entries that were skipped on other panels.
         """
         # The entries are sampled from the given one (sample 0) to the left end of its panel, at
         # s = -1. motions has the distance that the front moves by all entries up to each sample.
+        # Where motions falls, entries move the front back.
         s = entry.s - (entry.s + 1.0) * ENTRY_FRACTIONS
         motions = skipped_motion + self.motion_by_entries(entry.panel, s)
         # Only entries in negative pre-stress can move the front back. On a panel with such entries
@@ -552,17 +558,13 @@ class SlowFront:
         if not skips_all:
             # The sample before the first one whose motion is too large, but at least sample 0.
             last = max(0, int(np.argmin(is_negligible)) - 1)
-        # The entries after the skipped ones move the front back if the motion falls from the last
-        # sample that is skipped to the next one.
-        next_moves_on = True
-        if is_negative and not skips_all:
-            next_moves_on = bool(motions[last + 1] >= motions[last])
+        next_moves_back = is_negative and not skips_all and motions[last + 1] < motions[last]
         return SkippedEntries(
             skips_any=last > 0,
             skips_all=skips_all,
             last_s=float(s[last]),
             total_motion=float(motions[last]),
-            next_moves_on=next_moves_on,
+            next_moves_back=bool(next_moves_back),
         )
 
     def motion_by_entries(self, panel: int, parameters: np.ndarray) -> np.ndarray:
@@ -626,10 +628,11 @@ class SlowFront:
     def entry_behind_slow_front(self) -> Entry | None:
         """Return the point where the next wave that arrives at the front has entered the rupture.
 
-        This is used if the wave entered through an earlier part of the slow front itself. Two waves
-        are traced back from the front to the curve: the one that arrives now, and one that arrives
-        slightly later. The next entries are on the panel where the later wave has entered. None if
-        this wave comes from beyond the end of the curve.
+        This function is used if the panel to the left of the last entry belongs to a slow front, on
+        which no wave enters. Two waves are traced back from the front to the curve: the one that
+        arrives now, and one that arrives slightly later. The next entries are on the panel where
+        the later wave has entered. The result is None if this wave comes from beyond the end of the
+        curve.
         """
         t_minus_x = self.t0 - self.x0
         delay = SEARCH_DELAY * max(self.size, abs(t_minus_x))
@@ -655,8 +658,8 @@ class SlowFront:
     def solve(self, chunk: Chunk) -> np.ndarray | None:
         """Return the positions of the front at the nodes of a chunk of entries, by Newton's method.
 
-        It is None if the chunk is too long, so that the method fails, or so that the Legendre
-        series of the result does not fall below SERIES_TOLERANCE.
+        The result is None if the chunk is too long, so that the method fails, or so that the
+        Legendre series of the positions does not fall below SERIES_TOLERANCE.
         """
         equation = FreeBoundary(self, chunk)
         # The positions, and the largest change of them in the last step.
@@ -729,10 +732,11 @@ class SlowFront:
         )
 
     def straight_to_mark(self, mark: float) -> Advance:
-        """Continue the front at the wave speed, which is 1, to a near end of negative pre-stress.
+        """Continue the front at the wave speed, which is 1, to the mark if it is near.
 
-        This end is the mark. The front cannot be resolved just before a mark where tau rises to 0.
-        If the mark is not near, no panel is returned, and the reason "unresolved".
+        The mark is the end of the negative pre-stress. The front cannot be resolved just before a
+        mark where tau rises to 0. If the mark is not near, no panel is returned, and the reason
+        "unresolved".
         """
         if mark - self.x0 > MARK_DISTANCE * self.size:
             return Advance(None, "unresolved")

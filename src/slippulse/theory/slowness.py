@@ -1,11 +1,11 @@
 """The inverse speed 1/v of a front as a function of the pre-stress ahead, for many pre-stresses.
 
-A formula in `front_speeds` gives the pre-stress for a speed. Here this function is interpolated and
-inverted, since a front needs the speed at many positions. The variable is an angle psi from 0 to
-pi/2, with 1/v = cos(psi). The pre-stress is a smooth function of psi at every damping ratio b. At
-b = 0 it is sin(psi). For small b it differs from sin(psi) only within a distance of about b from
-both ends of the range. It is interpolated on panels in psi, which are halved until they resolve it,
-and inverted by Newton's method.
+A formula in `front_speeds` gives the pre-stress for a speed. This module interpolates and inverts
+that function, since a front needs the speed at many positions. The variable is an angle psi from 0
+to pi/2, with 1/v = cos(psi). The pre-stress is a smooth function of psi at every damping ratio b.
+At b = 0 it is sin(psi). For small b it differs from sin(psi) only within a distance of about b from
+both ends of the range. The pre-stress is interpolated on panels in psi, which are halved until they
+resolve it, and inverted by Newton's method.
 """
 
 from functools import lru_cache

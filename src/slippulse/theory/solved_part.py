@@ -91,8 +91,8 @@ class SolvedPart(PartWithEdge):
     def largest_velocity(self, until: float, horizon: Callable) -> float:
         """Return the largest slip velocity of the part, until a time and before a horizon.
 
-        It is searched on a grid of positions, and then on finer grids around the highest peaks.
-        horizon(x) is the time up to which slip velocity at x is known.
+        The largest velocity is searched on a grid of positions, and then on finer grids around the
+        highest peaks. horizon(x) is the time up to which slip velocity at x is known.
         """
 
         def peak_velocity(x: np.ndarray) -> np.ndarray:

@@ -171,7 +171,8 @@ def _earliest_moving_front(stretches: list[Stretch]) -> tuple[Stretch, float] | 
 def _cut_overrunning_fronts(stretches: list[Stretch]) -> list[tuple[Point, str]]:
     """Cut each front that has run beyond the point where the front of a neighbour has stopped.
 
-    Its motion beyond this point is unknown. Return the points of the cuts, each with the reason.
+    The motion of such a front beyond this point is unknown. Return the points of the cuts, each
+    with the reason.
     """
     unknown = []
     for left, right in pairwise(stretches):
@@ -205,7 +206,7 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
         # For the left front, x is mirrored: `Stretch` treats both fronts as right fronts.
         stretch = Stretch(ends, next_start={LEFT: -end_before, RIGHT: start_after})
         if left < right:
-            # The panels of the interval itself. Its pre-stress is at least 1, so that T = 0 on it.
+            # The panels of the interval itself. The pre-stress is at least 1 there, so that T = 0.
             panels, _ = fast_front.panels_to_right(Point(left, 0.0), stop=right, until=np.inf)
             stretch.add(RIGHT, panels, Point(right, 0.0))
         stretches.append(stretch)
@@ -215,8 +216,8 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
 def _advance_fast_front(fast_front: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Advance the front on one side of a stretch while it is faster than the waves.
 
-    It runs at most up to the next nucleation point, or until a time. fast_front belongs to the
-    pre-stress with this side turned to the right: for the left side it is mirrored at x = 0.
+    The front runs at most up to the next nucleation point, or until a time. fast_front belongs to
+    the pre-stress with this side turned to the right: for the left side it is mirrored at x = 0.
     """
     start, stop = stretch.ends[side], stretch.next_start[side]
     panels, end = fast_front.panels_to_right(Point(side * start.x, start.time), stop, until)
@@ -254,7 +255,6 @@ def _advance_slow_front(fast_front: FastFront, stretch: Stretch, side: float, un
     # A front cannot stop in positive pre-stress. If it seems to, its motion is not known.
     if reason == "stops" and fast_front.prestress(side * end.x) > EQUALITY_TOLERANCE:
         reason = "positive_prestress"
-    # In all cases but these, the front is still slow, and its next panel is added later.
     if reason in END_REASONS:
         stretch.end_reason[side] = reason
     elif end.time >= until:
@@ -284,8 +284,8 @@ def _join_met_stretches(stretches: list[Stretch]) -> list[Stretch]:
 def _merge_if_met(left: Stretch, right: Stretch) -> Stretch | None:
     """Return two neighbouring stretches combined into one, or None if their fronts have not met.
 
-    Both are cut at the position that their fronts reach at the same time. So each position belongs
-    to the front that arrives there first.
+    Both stretches are cut at the position that their fronts reach at the same time. So each
+    position belongs to the front that arrives there first.
     """
     # If their known paths do not overlap, the fronts have not met.
     if not (left.panels and right.panels and right.ends[LEFT].x <= left.ends[RIGHT].x):

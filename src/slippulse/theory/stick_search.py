@@ -157,8 +157,8 @@ class StickSearch:
             return first_zeros
         for _ in range(2):
             fine = self._sample(samples.x[row], np.linspace(start, end, FINE_PARTS + 1, axis=1))
-            # The column of the first fine sample at or below 0. It is 0 if there is none, since the
-            # first fine sample is positive.
+            # The column of the first fine sample at or below 0. Column 0 means that there is none,
+            # since the first fine sample is positive.
             first_below = np.argmax(fine.velocity <= 0.0, axis=1)
             with_zero = np.flatnonzero(first_below)
             zeros = self._zeros_in_steps(fine, with_zero, first_below[with_zero])
@@ -224,7 +224,8 @@ class StickSearch:
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
         # The columns go back in time: column 0 is the end of the step, and column -1 is next to its
         # start. The shorter step starts at the latest sample above QUIET_VELOCITY; this is column 0
-        # if no sample is above. It ends at the sample after that, in the column before.
+        # if no sample is above. The shorter step ends at the sample after that, in the column
+        # before.
         start_column = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
         columns = np.stack([start_column, start_column - 1], axis=1)
         rows = np.arange(x.size)[:, None]

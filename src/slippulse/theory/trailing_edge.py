@@ -1,7 +1,7 @@
 r"""The trailing edge of one part of a rupture: the time at which each position sticks.
 
-At each position this is the first time after the release at which du/dt is 0. The construction is
-valid as long as the edge runs faster than the waves. This is so if du/dt falls along both
+A position sticks at the first time after the release at which du/dt is 0. The construction is valid
+as long as the edge runs faster than the waves. This is so if du/dt falls along both
 characteristics, that is, with xi = t - y and with eta = t + y. Then no stuck point lies in the past
 of a sliding one, and Riemann's formula is valid up to the stick. A block that has stuck is never
 released again, because the stress on it is negative. This stress is d2u/dt2 (1 - (dt/dx)^2), with
@@ -70,17 +70,18 @@ SINGLE_JUMP_LENGTH = 1e3
 MAX_KNOTS = 30_000
 # The most steps of Newton's method for a stick time.
 MAX_NEWTON_STEPS = 12
-# It fails if it moves farther from its start than this fraction of the interval length.
+# Newton's method fails if it moves farther from its start than this fraction of the interval
+# length.
 MAX_CORRECTION = 0.05
-# It ends when its last step is below this.
+# Newton's method ends when its last step is below this.
 NEWTON_TOLERANCE = 1e-11
-# It also ends when its next step, which is about the product of the last two, is below this
-# fraction of the interval length.
+# Newton's method also ends when its next step, which is about the product of the last two, is below
+# this fraction of the interval length.
 NEXT_STEP_TOLERANCE = 1e-14
 # Stick times that differ by less than this are equal, and slip velocities below it are 0.
 ROUNDING_ERROR = 1e-12
-# Error of du/dt. It makes a stick time uncertain where du/dt falls slowly through 0, as it does
-# next to where a slow front has stopped.
+# Error of du/dt. This error makes a stick time uncertain where du/dt falls slowly through 0, as it
+# does next to where a slow front has stopped.
 VELOCITY_ERROR = 1e-11
 # Errors of stick times below this are neglected.
 TIME_ERROR = 1e-9
@@ -128,8 +129,8 @@ class PartWithEdge(Part):
     def _first_positions(self) -> np.ndarray:
         """Return the positions of the first knots.
 
-        They are the ends of panels, the marks, the positions of the two fronts at the final time,
-        and the middles between all of these. So every second one is a middle.
+        The positions are the ends of panels, the marks, the positions of the two fronts at the
+        final time, and the middles between all of these. So every second one is a middle.
         """
         curve = self.curve
         left, right = curve.edges[[0, -1]]
@@ -183,8 +184,8 @@ class PartWithEdge(Part):
     def _make_knots(self, x: np.ndarray, stick: np.ndarray) -> Knots:
         """Return knots at positions x with given stick times, NaN where a position does not stick.
 
-        This computes du/dt and its derivatives at the stick time, and from them the kind of each
-        knot: it slides until the end, or the trailing edge is faster or slower than the waves
+        The function computes du/dt and its derivatives at the stick time, and from them the kind of
+        each knot: it slides until the end, or the trailing edge is faster or slower than the waves
         there, or its slip is too brief to decide between these two.
         """
         sticks = np.isfinite(stick)
@@ -227,8 +228,8 @@ class PartWithEdge(Part):
         """
         marks = np.array(self.marks)
         start_times = self.curve.arrival(marks)
-        # Time from the passage of each wave to the stick, [knot, mark]. It changes its sign where
-        # the wave meets the edge.
+        # Time from the passage of each wave to the stick, [knot, mark]. This delay changes its sign
+        # where the wave meets the edge.
         delay = (knots.stick - side * knots.x)[:, None] - (start_times - side * marks)
         meets_edge = delay[1:] * delay[:-1] < 0.0
         # An edge that is slower than the waves is not interpolated by cubics, so that its kinks do
@@ -384,8 +385,8 @@ class PartWithEdge(Part):
     def approximate_stick_time(self, x: np.ndarray) -> np.ndarray:
         """Return stick times that are interpolated between knots, without further computation.
 
-        They are accurate to a fraction of the knot spacing. The stick time of a block that does not
-        stick is the final time.
+        The stick times are accurate to a fraction of the knot spacing. The stick time of a block
+        that does not stick is the final time.
         """
         knots = self.knots
         k = knots.interval_of(x)
@@ -396,9 +397,9 @@ class PartWithEdge(Part):
     def _exact_stick_time(self, x: np.ndarray, knots: Knots | None = None) -> np.ndarray:
         """Return the exact stick times of positions; NaN if a block does not stick.
 
-        Between knots (by default those of this part) where the edge is faster than the waves, they
-        are found from the interpolated times. Elsewhere they are searched from the release on,
-        which takes longer.
+        Between knots (by default those of this part) where the edge is faster than the waves, stick
+        times are found from the interpolated times. Elsewhere stick times are searched from the
+        release on, which takes longer.
         """
         knots = knots or self.knots
         if knots.x.size < 2:
@@ -422,8 +423,8 @@ class PartWithEdge(Part):
     ) -> np.ndarray:
         """Return the stick times of positions x in the intervals k, by Newton's method for du/dt.
 
-        It starts from the interpolated stick times. The result is NaN where it is not requested,
-        and where the steps lead too far away from the interpolated time.
+        The method starts from the interpolated stick times. The result is NaN where no stick time
+        is requested, and where the steps lead too far away from the interpolated time.
         """
         length = knots.x[k + 1] - knots.x[k]
         fraction = (x - knots.x[k]) / length
@@ -438,7 +439,7 @@ class PartWithEdge(Part):
         for _ in range(MAX_NEWTON_STEPS):
             if not missing.size:
                 break
-            # Both are 0 before the first step, which has no secant.
+            # Before the first step, both are 0. This step has no secant.
             velocity_before, step_before = velocity[missing], step[missing]
             velocity[missing] = self.velocity(x[missing], time[missing])
             # In the next steps the acceleration is replaced by the secant, the change of velocity
@@ -465,8 +466,8 @@ class PartWithEdge(Part):
     def slow_points(self) -> list[Point]:
         """Return the points where the trailing edge is not faster than the waves.
 
-        They are the knots just before a jump of the edge, the knots of the kind SLOWER_THAN_WAVES,
-        and the points where a front has stopped and no fast edge begins.
+        These points are the knots just before a jump of the edge, the knots of the kind
+        SLOWER_THAN_WAVES, and the points where a front has stopped and no fast edge begins.
         """
         knots = self.knots
         k = np.arange(knots.x.size - 1)
@@ -517,8 +518,8 @@ class PartWithEdge(Part):
     def _first_at_knots(self) -> FirstStick | None:
         """Return where and when something first sticks, as far as the knots show it.
 
-        This is at a knot, or at a minimum of the trailing edge between two knots. None if no knot
-        sticks.
+        The first stick is at a knot, or at a minimum of the trailing edge between two knots. The
+        result is None if no knot sticks.
         """
         knots = self.knots
         has_stuck = knots.kind != SLIDING
@@ -549,8 +550,8 @@ class PartWithEdge(Part):
         """
         knots = self.knots
         deceleration = np.abs(knots.velocity_by_xi + knots.velocity_by_eta)
-        # A slip is brief only next to the point where a front has stopped. Its stick time is the
-        # time at which the front arrives, which has no such error.
+        # A slip is brief only next to the point where a front has stopped. The stick time of a
+        # brief slip is the time at which the front arrives, which has no such error.
         deceleration = np.where(knots.kind == BRIEF_SLIP, np.inf, deceleration)
         error = VELOCITY_ERROR / np.maximum(deceleration, ROUNDING_ERROR)
         error[error < TIME_ERROR] = 0.0
@@ -573,12 +574,12 @@ class PartWithEdge(Part):
     def _positions_stuck_earlier(self, first: FirstStick) -> np.ndarray:
         """Return positions between knots that have stuck before the first stick that is known.
 
-        They are searched in each interval where a stick before this time is possible.
+        Such positions are searched in each interval where a stick before this time is possible.
         """
         knots, curve = self.knots, self.curve
         # A stick between two knots makes both of them stick, at the latest when waves from it
-        # arrive there. Their travel times add up to the length of the interval. So the stick is not
-        # earlier than this time.
+        # arrive there. The travel times of these waves add up to the length of the interval. So the
+        # stick is not earlier than this time.
         earliest = 0.5 * (knots.stick[:-1] + knots.stick[1:] - np.diff(knots.x))
         is_released = curve.arrival(knots.x) < first.time
         is_partly_released = is_released[:-1] | is_released[1:]
@@ -601,7 +602,7 @@ class PartWithEdge(Part):
     def _minimum_between(self, left: float, right: float) -> FirstStick | None:
         """Return the minimum of the trailing edge between two positions.
 
-        It is None if the edge does not fall into the interval from both ends.
+        The result is None if the edge does not fall into the interval from both ends.
         """
 
         def edge_slope(position: float) -> float:

@@ -28,8 +28,8 @@ def fast_fronts(
 ) -> Curve:
     """Return both fronts of a single nucleation point at x = 0, up to the distance ``reach``.
 
-    They end earlier where they are not faster than the waves. The panels are short enough for the
-    waves behind the fronts, at the elasticity ratio gamma.
+    The fronts end earlier where they are not faster than the waves. The panels are short enough for
+    the waves behind the fronts, at the elasticity ratio gamma.
     """
     law = FastFront(prestress=prestress, gamma=gamma, damping_ratio=damping_ratio, release=release)
     check_number("prestress at x = 0", float(prestress(0.0)), at_least=1.0)

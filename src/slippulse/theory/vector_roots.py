@@ -27,8 +27,8 @@ def roots_between(
     at_lower and at_upper are the values of the functions at the bounds, which have different signs.
     xtol is the error of a root.
 
-    This is Chandrupatla's method. Like Brent's method it shrinks a bracket around each root, by
-    interpolation or by bisection.
+    The roots are found by Chandrupatla's method. Like Brent's method, this method shrinks a bracket
+    around each root, by interpolation or by bisection.
     """
     if np.any(at_lower * at_upper > 0.0):
         problem = "a function has the same sign at both bounds"

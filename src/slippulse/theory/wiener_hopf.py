@@ -13,8 +13,8 @@ by a = alpha dx (`alpha_dx`). The symbol is
 
     M(k) = 1 - [S(k) (1 + i b w) + g + i a w]/w^2 = M_+(k) M_-(k),
 
-where M_+ is analytic and without zeros for Im k > 0. It is an exact product of an algebraic
-function and two factors that decay on opposite sides of the real axis,
+where M_+ is analytic and without zeros for Im k > 0. M is an exact product of an algebraic function
+and two factors that decay on opposite sides of the real axis,
 
     M = -((r + q)/w)^2 (1 - rho e^{ik}) (1 - rho e^{-ik}),   rho = (r - q)/(r + q),
     r = sqrt(1 + i b w - (w^2 - g - i a w)/4),   q = (i/2) sqrt(w^2 - g - i a w).
@@ -98,8 +98,8 @@ def log_prestress(
     Drag requires leaf springs, and is above -2 sqrt(g (1 - 1/v^2)), below which slip runs away.
 
     Under the release rule "total" the pre-stress is tau_0 = M_+(0), and under "elastic" it is
-    M_+(0)/M_+(i/(b v)), where M_+ is the Wiener-Hopf factor of the front. Both hold with leaf
-    springs as without: a block ahead of the front has not slipped, so that its leaf spring is
+    M_+(0)/M_+(i/(b v)), where M_+ is the Wiener-Hopf factor of the front. Both formulas hold with
+    leaf springs as without: a block ahead of the front has not slipped, so that its leaf spring is
     relaxed.
     """
     contour, angle = _choose_contour(
@@ -112,8 +112,9 @@ def log_prestress(
         gamma_dx2=gamma_dx2,
         alpha_dx=alpha_dx,
     )
-    # ln M_+(0). The left half of the contour contributes the complex conjugate of the right half,
-    # so that the imaginary part counts twice.
+    # ln M_+(0) is the integral of ln(1 - rho e^{iz})/z divided by 2 pi i. If the right half of the
+    # contour contributes I to the integral, its mirror image on the left contributes minus the
+    # complex conjugate of I. The sum is 2 i Im I, and Im I/pi after the division.
     log_tau = (log_values @ (contour.weight / contour.z)).imag / np.pi
     if gamma_dx2 > 0.0:
         # The integrand has a pole at z = 0, where the two halves of the contour meet. A small arc
@@ -148,7 +149,7 @@ def _log_m_plus_at_iy(
 ) -> np.ndarray:
     """Return ln M_+(i y) of each front, where y = 1/(b v) and b is the damping ratio.
 
-    It is the integral of ln(1 - rho e^{iz})/(z - i y) along the contour, divided by 2 pi i.
+    The result is the integral of ln(1 - rho e^{iz})/(z - i y) along the contour, divided by 2 pi i.
     log_values, the result of `log_factor`, are the values of this logarithm at the nodes.
     excess_speed is v - 1.
     """

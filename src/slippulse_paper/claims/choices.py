@@ -72,7 +72,7 @@ class Change(NamedTuple):
 def changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return all ordered pairs of combinations that differ in one choice only.
 
-    This must be a choice that the paper leaves open (CHOICE_WORDS). Combinations without a
+    This choice must be one that the paper leaves open (CHOICE_WORDS). Combinations without a
     deviation are left out. So are those at the last release, which is a property of the lattice.
     """
     compared = []
@@ -100,9 +100,9 @@ def changes(combinations: Iterable[Combination]) -> list[Change]:
 def decisive_changes(combinations: Iterable[Combination]) -> list[Change]:
     """Return one change for each choice that decides whether the claim holds.
 
-    It is the smallest change of this choice from a combination at which the claim holds to one at
-    which it fails. Choices with larger effects come first. If no choice decides, the result is the
-    single change with the largest effect.
+    The returned change is the smallest one of this choice, from a combination at which the claim
+    holds to one at which it fails. Choices with larger effects come first. If no choice decides,
+    the result is the single change with the largest effect.
     """
     # Every change between exact solutions ranks above all changes between lattices.
     rank = attrgetter("exact", "size")
@@ -168,7 +168,7 @@ class OverChoices(Claim):
         changes : the changes of choices on which the verdict depends
         choice_names : words for each choice
         settings, unsure : the choices in words, and the template values of the result, at the first
-            combination with a caveat (`_in_doubt`)
+            combination with a caveat (`_combination_in_doubt`)
         """
         deviations: dict[bool | None, list] = {True: [], False: [], None: []}
         for combination in self.combinations:
@@ -180,7 +180,7 @@ class OverChoices(Claim):
             if combination.fraction == LAST_RELEASE_FRACTION
             and combination.result["deviation"] is not None
         ]
-        in_doubt = self._in_doubt()
+        in_doubt = self._combination_in_doubt()
         settings = [
             f"{CHOICE_WORDS[name]} *{value}*"
             if isinstance(value, str)
@@ -198,7 +198,7 @@ class OverChoices(Claim):
             "unsure": in_doubt.claim.template_values,
         }
 
-    def _in_doubt(self) -> Combination:
+    def _combination_in_doubt(self) -> Combination:
         """Return the first combination whose verdict has a caveat; the first one if none has."""
         for combination in self.combinations:
             if combination.result["verdict"] == rules.CAVEAT:

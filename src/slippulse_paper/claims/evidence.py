@@ -95,9 +95,9 @@ def fit_exponent(
 ) -> Uncertain:
     """Fit a measured quantity as a power of a predicted one, and return the exponent.
 
-    Its uncertainty has two causes: the finite spacing, and the choice of runs. For the second, all
-    runs with one value of one of the varied columns are left out, and the largest change of the
-    exponent counts. The larger of both is returned.
+    The uncertainty of the exponent has two causes: the finite spacing, and the choice of runs. For
+    the second, all runs with one value of one of the varied columns are left out, and the largest
+    change of the exponent counts. The larger of both is returned.
 
     measured, predicted : expressions over columns
     """

@@ -149,8 +149,8 @@ def arrest_time_ratios(evidence: Evidence) -> dict[str, float]:
     judged = transition.judge_estimate(evidence, "T_trans_stress", "stress", "time")
     medians = {}
     for fraction, median in transition.median_ratio_by_fraction(judged.combinations).items():
-        # Leave out the median of lattices. They are measured at the last release, and this median
-        # has the text "last release" in place of a fraction.
+        # Leave out the median of lattices. Lattices are measured at the last release, and their
+        # median has the text "last release" in place of a fraction.
         if isinstance(fraction, float):
             medians[f"median_{100.0 * fraction:.0f}"] = median
     return medians

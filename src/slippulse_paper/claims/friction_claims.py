@@ -1,8 +1,9 @@
 """Judge claims about other friction laws, and about the lattice of Burridge and Knopoff.
 
 Each function takes the evidence and the id of its claim, and returns the result. A result with
-``condition=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. Its
-`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+``condition=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 import numpy as np
@@ -36,7 +37,8 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     most_blocks = two_way["sliding_at_once"].max()
     most_without_springs = one_way["sliding_at_once"].max()
     is_wide = bool(fewest_blocks > 1.0)
-    # Each boundary condition counts as one run. It is undecided if no rupture becomes a pulse.
+    # Each boundary condition counts as one run. Such a run is undecided if no rupture becomes a
+    # pulse.
     decided = [None if pulses.empty else True for pulses in (two_way, one_way)]
     return Qualitative(
         decided=decided,
@@ -84,8 +86,8 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether a pulse in zero pre-stress decays under rate strengthening, with held stress.
 
-    It decays if its largest velocity falls by more than the tolerance, on the finest and on the
-    coarsest lattice. Each value of the rate strengthening counts as one run.
+    A pulse decays if its largest velocity falls by more than the tolerance, on the finest and on
+    the coarsest lattice. Each value of the rate strengthening counts as one run.
     """
     # The rows with this role are for held stress. They have the largest velocity at several times,
     # for each rate strengthening and spacing dx.

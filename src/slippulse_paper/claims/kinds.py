@@ -172,7 +172,7 @@ class Equation(Claim):
     def relative(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the relative deviation and the relative uncertainty of each run.
 
-        Both are absolute where the predicted value is 0.
+        Both results are absolute where the predicted value is 0.
         """
         scale = np.where(self.predicted == 0.0, 1.0, np.abs(self.predicted))
         deviations = np.abs(self.measured - self.predicted) / scale
@@ -243,9 +243,9 @@ class Approximate(Claim):
     def fields(self) -> dict[str, Any]:
         """Return the median ratio (measured), and statistics of the deviations of the runs.
 
-        These are the median (deviation) with its uncertainty, the 90th percentile (ninety) and the
-        largest. They are left out if no run has a number. The fields exact_... have the deviations
-        from exact theory.
+        The statistics are the median (deviation) with its uncertainty, the 90th percentile (ninety)
+        and the largest. They are left out if no run has a number. The fields exact_... have the
+        deviations from exact theory.
         """
         usable_deviations = self.deviations[np.isfinite(self.deviations)]
         exact_median, exact_largest = self.from_exact

@@ -4,8 +4,8 @@ The table `layer` has one row for each run, grid and station. A station is a pos
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
 The column part names a group of runs; `studies.layer.table` describes all of them. The part far has
 the same pulses as the part pulse, farther away and on two grids. A function that judges a claim
-takes the evidence and the id of the claim, and returns the result. Its `further` numbers are shown
-in the table of claims, and sentences quote its `template_values`.
+takes the evidence and the id of the claim, and returns the result. The `further` numbers of the
+result are shown in the table of claims, and sentences quote its `template_values`.
 """
 
 from collections.abc import Callable
@@ -79,8 +79,8 @@ def crossing_width(pulses: pd.DataFrame) -> pd.Series:
     """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
     Shear waves run at the speed sqrt(gamma/2). The waves of a source that moves along the top at
-    the speed v have a straight wave front. It meets the fault at the distance sqrt(2 v^2/gamma - 1)
-    behind the source.
+    the speed v have a straight wave front, which meets the fault at the distance sqrt(2 v^2/gamma -
+    1) behind the source.
     """
     gamma = pulses.index.get_level_values("gamma")
     return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)
@@ -105,8 +105,8 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
     """Judge that pulses are also steady if the strength depends on the normal stress.
 
-    The column coupling has the factor by which the strength depends on it. The pulses that run to
-    the right and to the left then differ, and each counts.
+    The column coupling has the factor by which the strength depends on this stress. The pulses that
+    run to the right and to the left then differ, and each counts.
 
     steady_right, steady_left : number of steady pulses that run to each side
     steady_to, failed_from : largest coupling of a steady pulse, smallest of one that is not steady
@@ -381,7 +381,7 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
 def poorly_resolved(steady: pd.DataFrame) -> dict[str, float]:
     """Return numbers on the steady pulses for which the finest grid is rather coarse.
 
-    These have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
+    Such pulses have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
 
     resolved_cells : the constant RESOLVED_CELLS
     unresolved : number of these pulses
@@ -618,7 +618,7 @@ def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
 def with_varied_energy(pulses: pd.DataFrame) -> pd.DataFrame:
     """Return the pulses that differ only in gamma and fracture energy.
 
-    They have the level of pre-stress that most pulses have.
+    All of them have the level of pre-stress that most pulses have.
     """
     levels = pulses.reset_index()["tau0"]
     most_frequent_level = float(levels.mode().iloc[0])
@@ -678,7 +678,7 @@ def quantities_at_one_level(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses in one dimension with the same friction, and with damping.
 
-    They are for the pulses that differ only in gamma and fracture energy.
+    The quantities are those of the pulses that differ only in gamma and fracture energy.
 
     line_speed : front speed
     line_width, line_slip : width and slip, divided by those of the paper's formulas
@@ -694,9 +694,9 @@ def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 def largest_speeds(evidence: Evidence) -> dict[str, float]:
     """Return the speeds of the fastest pulse on its coarsest and on its finest grid.
 
-    They show that a speed slightly above that of the fastest wave is an error of the grid. Also
-    return the largest speed of all pulses with damping (damped_speed), on the finest grids. Speeds
-    are measured at the last station.
+    The two speeds show that a speed slightly above that of the fastest wave is an error of the
+    grid. Also return the largest speed of all pulses with damping (damped_speed), on the finest
+    grids. Speeds are measured at the last station.
     """
     at_station = rows_at_station(evidence, LAST)
     rows = at_station.query("part == 'pulse'")
@@ -716,7 +716,8 @@ def largest_speeds(evidence: Evidence) -> dict[str, float]:
 def far_numbers(evidence: Evidence) -> dict[str, float]:
     """Return numbers on the pulses of the part far, which were followed farther.
 
-    The numbers of `numbers_on_splits`, which say how many of them split and where, are among these.
+    The result contains the numbers of `numbers_on_splits`: how many of these pulses split, and
+    where.
 
     from_near_slip : largest relative change of the slip between the first and the last station, of
         pulses that do not split

@@ -114,7 +114,10 @@ class Entry(SimpleNamespace):
         return f"{text}; {self.asked}" if self.asked else text
 
     def _sentence_on_deviation(self) -> str:
-        """Return a sentence with the deviation and its uncertainty."""
+        """Return a sentence with the deviation and its uncertainty, as the reason for the verdict.
+
+        This function is called only for verdicts with a reservation.
+        """
         if self.deviation_uncertainty is not None:
             uncertainty = percent(self.deviation_uncertainty)
         elif self._has_relative_deviation():
@@ -167,12 +170,15 @@ class QualitativeEntry(Entry):
         return f"{text} (tolerance {tolerance} %)" if self.tolerance else text
 
     def _sentence_on_deviation(self) -> str:
-        """Return a sentence on the runs in which the claim holds and on the other runs."""
+        """Return the reason why the verdict has a reservation: some runs, or else a condition.
+
+        This function is called only for such verdicts.
+        """
         # The text is, for example, "38 of 40, 1 against, 1 undecided".
         held, _, others = self.measured_text().partition(", ")
         if others:
             return f"The claim holds in {held} cases ({others})."
-        # If a claim holds in all runs, its verdict has a reservation only because of a condition.
+        # The claim holds in all runs, so the only reason left is a condition.
         return "The claim holds only under a condition that the paper does not state."
 
 
@@ -250,8 +256,9 @@ class Ledger:
     def listed(self, id: str, words: str) -> str:
         """Return some further numbers of a claim as Markdown, such as "12 *cracks*; 3 *pulses*".
 
-        Their keys have the form "TEXT: NAME". Those whose TEXT contains the given words are listed.
-        If there is none, the result is "none". A page may break the words at the end of a line.
+        The keys of further numbers have the form "TEXT: NAME". The numbers whose TEXT contains the
+        given words are listed. If there is none, the result is "none". A page may break the words
+        at the end of a line.
         """
         words, parts = " ".join(words.split()), []
         for key, value in self(id).further.items():

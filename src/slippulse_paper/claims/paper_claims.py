@@ -1,7 +1,7 @@
 """Judge every claim of manuscript/claims.yaml, and return the results for claims.json.
 
-A claim is judged by a rule in the YAML file, or by a function that `JUDGES_BY_CLAIM` lists. Its
-texts may contain expressions, which are evaluated here.
+A claim is judged by a rule in the YAML file, or by a function that `JUDGES_BY_CLAIM` lists. The
+texts of a claim may contain expressions, which this module evaluates.
 """
 
 import json

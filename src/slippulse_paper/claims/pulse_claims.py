@@ -1,8 +1,9 @@
 """Judge claims about pulses on lattices: equations, uniqueness and stability.
 
 `equation` and `always` judge claims whose rule is in manuscript/claims.yaml. Each other claim has a
-function here, which takes the evidence and the id of the claim, and returns the result. Its
-`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+function here, which takes the evidence and the id of the claim, and returns the result. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -97,8 +98,9 @@ def always(evidence: Evidence, id: str, **keys: Any) -> Qualitative:
 def numbers_of_rule(evidence: Evidence, rule: Always) -> dict[str, float]:
     """Return the additional numbers of a rule, by words for the table of claims.
 
-    They are values of expressions over the runs of the first sweep (numbers), and the number of
-    runs with each regime among those that meet a condition (counted).
+    The numbers are values of expressions over the runs of the first sweep (field numbers of the
+    rule), and the number of runs with each regime among those that meet a condition (field
+    counted).
     """
     first_sweep = evidence.tables[rule.sweeps[0]]
     by_words = {}
@@ -113,14 +115,14 @@ def numbers_of_rule(evidence: Evidence, rule: Always) -> dict[str, float]:
 def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     """Return two columns of signs: 1 if a pulse grows, -1 if it decays, 0 if it does neither.
 
-    Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond. It
-    is compared with a reference: the pulse of an otherwise equal run that stays at the level 0. By
-    theory this pulse keeps its size.
+    Each pulse formed at the pre-stress level 0, and then entered the level in the column beyond.
+    The pulse is compared with a reference: the pulse of an otherwise equal run that stays at the
+    level 0. By theory the reference keeps its size.
 
     velocity_growth : sign of the velocity change; 0 if not larger than that of the reference
     width_growth : sign of the half-width minus that of the reference
 
-    Both are -1 if the pulse has died, and 0 if they are unknown.
+    Both signs are -1 if the pulse has died, and 0 if they are unknown.
     """
     keys = ["left", "right", "width", "dx", "damping_ratio", "release", "friction"]
     references = table[table["beyond"] == 0.0].drop_duplicates(keys).set_index(keys)
@@ -151,7 +153,7 @@ def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
 def thin_layer(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether the layer is thin: its thickness must be much smaller than each pulse width.
 
-    The thickness is 1. Divided by the width, it must not be larger than the tolerance. This is a
+    The thickness, 1, divided by the width must not be larger than the tolerance. A thin layer is a
     premise of the model. If it fails, the verdict is "premise not met".
     """
     table = evidence.finest("any_prestress")
@@ -200,7 +202,9 @@ def all_within(
 def differences_of_pairs(
     table: pd.DataFrame, sizes: list[str]
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yield the relative differences between the pulses of each pair of runs, and uncertainties.
+    """Yield the relative differences between the pulses of two runs, and their uncertainties.
+
+    This is done for every pair of runs in the table.
 
     sizes : columns that are compared; both arrays have one value for each of them
     """
@@ -232,8 +236,9 @@ def displacement_pulse_unique(evidence: Evidence, id: str) -> Qualitative:
 def perturbed_pulses_settle(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether a pulse that enters another pre-stress becomes a steady pulse there.
 
-    Its final slip must be that of a simulated steady pulse in this pre-stress, within the tolerance
-    and on the two finest lattices. Deviations from two predicted slips are shown, too.
+    The final slip of the pulse must be that of a simulated steady pulse in this pre-stress, within
+    the tolerance and on the two finest lattices. Deviations from two predicted slips are shown,
+    too.
     """
     deviations_by_lattice, answers_by_lattice = [], []
     perturbed, unperturbed = evidence.lattices(*PERTURBED), evidence.lattices(*UNPERTURBED)
@@ -311,17 +316,19 @@ def zero_net_stress_change(evidence: Evidence, id: str) -> Equation:
 def stress_pulse_not_unique(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether pulses in zero pre-stress differ if they began in different pre-stress.
 
-    In each pair of runs, the pulses must have different peak velocities or different half-widths.
-    The difference must be larger than the tolerance.
+    All runs are compared with each other. In each pair, the peak velocities or the half-widths of
+    the two pulses must differ by more than the tolerance.
     """
     table = evidence.finest("stress_pulses", where=WITH_DAMPING)
-    # The smallest nonzero damping ratio is that of the figures. Without damping the lattice rings.
+    # Of the runs with damping, take those with the damping ratio of the figures, which is the
+    # smallest one. Runs without damping are left out, because their lattices ring.
     table = table[table["damping_ratio"] == table["damping_ratio"].min()]
     allowed = evidence.tolerance(id)
     sizes = ["pulse_peak_velocity", HALF_WIDTH]
     decided: list[bool | None] = []
     for differences, uncertainties in differences_of_pairs(table, sizes):
-        # Pulses count as the same only if their differences are surely within the tolerance.
+        # The result is None, undecided, if the uncertainties allow both: that the pulses differ by
+        # more than the tolerance, and that they do not.
         is_same_pulse = all_within(differences, uncertainties, allowed, add_uncertainties=True)
         decided.append(None if is_same_pulse is None else not is_same_pulse)
     return Qualitative(decided=decided)

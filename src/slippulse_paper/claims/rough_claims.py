@@ -1,8 +1,9 @@
 """Judge claims about pulses on a rough pre-stress, and compute the numbers of our finding on them.
 
 An ensemble is a set of runs whose pre-stress has the same statistics, with different seeds. A
-function that judges a claim takes the evidence and the id of the claim, and returns the result. Its
-`further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+function that judges a claim takes the evidence and the id of the claim, and returns the result. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 import pandas as pd

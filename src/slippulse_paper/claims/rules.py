@@ -84,8 +84,8 @@ def worst_tested(verdicts: Iterable[str]) -> str:
 def verdict_over_choices(verdicts: Sequence[str]) -> str:
     """Return one verdict on a claim from its verdicts at all combinations of open choices.
 
-    This is "depends on an open choice" if the claim holds at one combination and fails at another.
-    Otherwise it is the worst verdict.
+    The verdict is "depends on an open choice" if the claim holds at one combination and fails at
+    another. Otherwise it is the worst verdict.
     """
     # True, False, or None if a verdict leaves open whether the claim holds.
     holds = [HOLDS_BY_VERDICT.get(verdict) for verdict in verdicts]

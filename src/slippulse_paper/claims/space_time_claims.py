@@ -1,9 +1,10 @@
 """Judge claims about the two panels of the published space-time figure.
 
 Numbers that were read off the figure are called readings. The study `published_figure` fits the
-exact solution to them. A pull is a fitted value minus the reading, divided by the reading error.
-A function that judges a claim takes the evidence and the id of the claim, and returns the result.
-Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+exact solution to them. A pull is a fitted value minus the reading, divided by the reading error. A
+function that judges a claim takes the evidence and the id of the claim, and returns the result. The
+`further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 import math
@@ -37,7 +38,8 @@ def judge_left_panel(evidence: Evidence, id: str) -> Reading:
 def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> dict[str, float]:
     """Return numbers for sentences about the readings of the trailing edge.
 
-    Their errors have two parts: one that all of them share, and one that is independent in each.
+    The errors of these readings have two parts: one that all of them share, and one that is
+    independent in each.
 
     own_edge_error : the independent part
     independent_chi_square : chi-square of all readings except arrows if no error was shared
@@ -124,7 +126,8 @@ def judge_right_panel(evidence: Evidence, id: str) -> Reading:
 def values_of_our_figure(evidence: Evidence, simulation: str) -> dict[str, float]:
     """Return the values in our own figure that correspond to the readings of one panel.
 
-    They are means over all runs. The key is what was read, in words, such as "slope of the front".
+    The values are means over all runs. The key is what was read, in words, such as "slope of the
+    front".
 
     simulation : name of the simulation of the panel
     """

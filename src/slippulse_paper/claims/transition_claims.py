@@ -9,7 +9,8 @@ estimated_time, estimated_length : the paper's estimates
 covered : distance that the left front has covered (arrests only)
 
 A function that judges a claim takes the evidence and the id of the claim, and returns the result.
-Its `further` numbers are shown in the table of claims, and sentences quote its `template_values`.
+The `further` numbers of the result are shown in the table of claims, and sentences quote its
+`template_values`.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -175,15 +176,16 @@ def transitions(evidence: Evidence) -> list[Runs]:
 def arrests(evidence: Evidence) -> list[Runs]:
     """Return runs under a stress boundary, measured when the left front counts as arrested.
 
-    In an exact solution this is when the front has covered a fraction of |x_minus|. On a lattice it
-    is at the last release. One run is enough for each level, as `widest_at_each_level` explains.
+    In an exact solution the front counts as arrested when it has covered a fraction of |x_minus|,
+    and on a lattice at its last release. One run is enough for each level, as
+    `widest_at_each_level` explains.
     """
     arrest_runs = []
     for choice, tables in exact_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, TRANSITION_COLUMNS) for table in tables]
         arrest_runs.append(Runs(choice, widest))
-    # The choices of exact solutions include the nucleation and the fraction. Those of lattices get
-    # them here.
+    # The choices of exact solutions include the nucleation and the fraction. The choices of
+    # lattices do not, and so these two are added.
     at_last_release: Chosen = {"nucleation": "Gaussian", "fraction": LAST_RELEASE_FRACTION}
     for choice, tables in simulated_runs(evidence, "stress"):
         widest = [widest_at_each_level(table, ARREST_COLUMNS) for table in tables]
@@ -194,8 +196,8 @@ def arrests(evidence: Evidence) -> list[Runs]:
 def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> pd.DataFrame:
     """Return the run with the widest nucleation at each level, with the paper's estimates added.
 
-    These are estimates of the time that the left front needs for the distance that it has covered,
-    and of the distance between the fronts at this time. The paper assumes that both run at speed 1.
+    The paper estimates the time that the left front needs for the distance that it has covered, and
+    the distance between the fronts at this time. The paper assumes that both run at speed 1.
 
     new_names : new names of the columns, by their names in the table
     """
@@ -209,7 +211,8 @@ def widest_at_each_level(table: pd.DataFrame, new_names: Mapping[str, str]) -> p
         # speed 1 the estimated time in its table is equal to |x_minus|.
         widest = widest.assign(covered=widest["fraction"] * widest["estimated_time"])
     # The new estimates are for the covered distance. At speed 1 the left front needs a time equal
-    # to it. Since the right front has run equally far, the fronts are twice as far apart.
+    # to this distance. Since the right front has run equally far, the fronts are twice as far
+    # apart.
     covered = widest["covered"]
     return widest.assign(estimated_time=covered, estimated_length=2.0 * covered)
 
@@ -367,9 +370,9 @@ def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, 
 def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge the paper's estimate of the arrest of the left front, under a stress boundary.
 
-    It is judged for each fraction of the path at which the front may count as arrested, and at the
-    last release. The claim also shows the median ratio of measured and estimated numbers for each
-    of these, and the length of the arrow in figure 4 divided by the estimate.
+    The estimate is judged for each fraction of the path at which the front may count as arrested,
+    and at the last release. The claim also shows the median ratio of measured and estimated numbers
+    for each of these, and the length of the arrow in figure 4 divided by the estimate.
 
     quantity : "time" or "length"
     """
@@ -585,9 +588,9 @@ def divergence_by_level(table: pd.DataFrame) -> list[Divergence]:
 def divergence(runs: pd.DataFrame) -> Divergence:
     """Return whether T_trans and L_trans diverge as gamma approaches 0.
 
-    Both must fall from each value of gamma to the next larger one. At the three smallest values,
-    both must be powers of gamma with an exponent that is negative by more than three standard
-    errors. The answer is None if there are fewer than three values of gamma.
+    T_trans and L_trans must fall from each value of gamma to the next larger one. At the three
+    smallest values, both must be powers of gamma with an exponent that is negative by more than
+    three standard errors. The answer is None if there are fewer than three values of gamma.
 
     runs : runs that differ only in gamma, in ascending order
     """
@@ -606,7 +609,7 @@ def divergence(runs: pd.DataFrame) -> Divergence:
 def judge_rise_with_prestress(table: pd.DataFrame, quantity: str) -> Qualitative:
     """Judge whether a quantity rises with the pre-stress, among runs that differ in nothing else.
 
-    Each pair of neighbouring levels counts as one run. It is undecided if the change is smaller
+    Each pair of neighbouring levels counts as one run. A pair is undecided if the change is smaller
     than its uncertainty. Values without an uncertainty are exact.
     """
     uncertainty = table.get(f"uncertainty_{quantity}", 0.0)

@@ -18,9 +18,9 @@ MAX_NAMED_DIFFERENCES = 4
 class Alterations:
     """Differences between a configuration and the shipped one, for each resolved simulation.
 
-    ``changes_of`` has the list of changes of each simulation, by name. Its entries are those of
-    `provenance.changes`: each has a dotted ``key``, the ``shipped`` value, and the altered value
-    (``here``).
+    ``changes_of`` has the list of changes of each simulation, by name. The entries of such a list
+    are those of `provenance.changes`: each has a dotted ``key``, the ``shipped`` value, and the
+    altered value (``here``).
     """
 
     def __init__(self, shipped: Configuration, altered: Configuration) -> None:

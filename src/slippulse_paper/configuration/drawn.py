@@ -14,15 +14,15 @@ from .runs import runs
 from .schema import Configuration
 
 
-def _is_pulse(run: Run) -> bool:
-    """Return True if the displacement is held and the pre-stress is positive on some side."""
+def _forms_pulse(run: Run) -> bool:
+    """Return True if the displacement is held, and a pulse forms in positive pre-stress."""
     highest = max(run.prestress.left, run.prestress.right)
     return run.boundary == "displacement" and highest > 0.0
 
 
 def _has_equal_levels(run: Run) -> bool:
-    """Return True for a pulse with the same pre-stress on both sides."""
-    return _is_pulse(run) and run.prestress.left == run.prestress.right
+    """Return True if a pulse forms, and the pre-stress is the same on both sides."""
+    return _forms_pulse(run) and run.prestress.left == run.prestress.right
 
 
 def _has_negative_left_level(run: Run) -> bool:
@@ -39,7 +39,7 @@ def _has_negative_left_level(run: Run) -> bool:
 # Conditions on a run, by the texts that stand for them in the DRAWS of figures.
 CONDITIONS: dict[str, Callable[[Run], bool]] = {
     "`boundary: displacement`": lambda run: run.boundary == "displacement",
-    "`boundary: displacement` and a level > 0": _is_pulse,
+    "`boundary: displacement` and a level > 0": _forms_pulse,
     "`boundary: displacement` and equal levels > 0": _has_equal_levels,
     "`boundary: stress`": lambda run: run.boundary == "stress",
     "`boundary: stress`, left level < 0, right level 0, no steps": _has_negative_left_level,

@@ -53,11 +53,12 @@ def _scene(simulation: Mapping, run: Run) -> Scene:
 def _time_step(simulation: Mapping, run: Run, friction: Friction) -> float:
     """Return the largest time step of a run, divided by dx.
 
-    It is the user-defined step of the simulation, or the default step.
+    The result is the user-defined step of the simulation, or the default step.
     """
     accuracy = simulation["accuracy"]
     step = simulation.get("max_step", _default_time_step(simulation, run, friction))
-    # The promise is the accuracy that the user requires. It also limits a user-defined step.
+    # The promise is the accuracy that the user requires. This accuracy also limits a user-defined
+    # step.
     if "promise" in accuracy:
         step = min(step, accuracy["max_step"])
     # The coarser runs of a grid study have a spacing that is larger by the factor coarser. If the

@@ -1,8 +1,8 @@
 """Pre-stress profiles of a configuration.
 
-A profile may name a file. Its points are then read into the configuration. A profile may also have
-a rough background with lists of parameters. It is then expanded into one profile for each
-combination of the parameters. Each expanded profile is converted to a `Prestress`.
+A profile may name a file, whose points are then read into the configuration. A profile may also
+have a rough background with lists of parameters. Such a profile is expanded into one profile for
+each combination of the parameters. Each expanded profile is converted to a `Prestress`.
 """
 
 import json
@@ -66,8 +66,8 @@ def _with_points_in_profiles(simulation: Any, key: str, folder: Path) -> Any:
 def _with_points(profile: Any, key: str, folder: Path) -> Any:
     """Return a scene or profile, whose dotted key is ``key``, with the points of its file.
 
-    It is returned as it is if it names no file, or if it already has the points. The path of the
-    file may be relative to ``folder``.
+    The scene or profile is returned as it is if it names no file, or if it already has the points.
+    The path of the file may be relative to ``folder``.
     """
     names_file = isinstance(profile, Mapping) and isinstance(profile.get("file"), str)
     if not names_file or "points" in profile:

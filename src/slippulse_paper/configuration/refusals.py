@@ -60,7 +60,7 @@ def problem_line(problem: Mapping, config: Mapping) -> str:
     mapping_path = path if kind == "value_error" else path[:-1]
     is_known_mapping = len(mapping_path) <= len(entry.path)
     if is_known_mapping:
-        # This is None for an error of a single value.
+        # The line is None for an error of a single value.
         line = _mapping_line(problem, config)
         if line is not None:
             return line
@@ -79,7 +79,8 @@ def _mapping_line(problem: Mapping, config: Mapping) -> str | None:
         # The reason begins with the key in the mapping.
         reason = str(problem["ctx"]["error"])
         return f"{dotted(path)}.{reason}" if path else reason
-    # A number that is missing in a row has an int at the end of the path. It is another kind.
+    # A missing key has a text at the end of the path. A missing number in a row has an int there,
+    # and is not described here.
     if kind == "missing" and isinstance(path[-1], str):
         return _missing_line(path, config)
     return _unknown_key_line(path, config) if kind == "extra_forbidden" else None
@@ -163,8 +164,8 @@ def _last_known_entry(path: Path, config: Any) -> _Entry:
 def _schema_of_list_entry(schema: Mapping) -> Any:
     """Return the schema for the entries of a list, or None if there is none.
 
-    It is also None if the entries are rows of numbers. A wrong row is refused with the whole list,
-    whose schema describes the rows.
+    The result is also None if the entries are rows of numbers. A wrong row is refused with the
+    whole list, whose schema describes the rows.
     """
     items = schema.get("items")
     # In JSON Schema, only a row of a fixed length has this key.

@@ -26,7 +26,7 @@ SAMPLED_TIMES, SAMPLED_POSITIONS = 241, 801
 FRONT_SPEED_LEVELS = 65
 # Keys that have one value in a scene and a list of values in a simulation.
 LISTED = ("gamma", "damping_ratio", "beta", "dx", "friction", "rate_strengthening", *EXTRA_TERMS)
-# Those keys of a preset that the results of a simulation depend on.
+# Keys of a preset on which the results of a simulation depend.
 NUMERICAL_KEYS = ("dx", "max_step", "order", "promise")
 # Lists of a simulation that may be replaced by their smallest and largest value when simulations
 # are checked: if any value of such a list is refused or expensive, one of these two is, too.
@@ -49,8 +49,9 @@ def accuracy_of(config: Configuration) -> dict[str, Any]:
 def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: Mapping) -> dict:
     """Return a simulation as a dictionary with everything that its results depend on.
 
-    Its own keys take precedence over the defaults of the model. The number of chunks is left out,
-    since results do not depend on it. ``accuracy`` has the numerical parameters from `accuracy_of`.
+    Keys of the simulation take precedence over the defaults of the model. The number of chunks is
+    left out, since results do not depend on it. ``accuracy`` has the numerical parameters from
+    `accuracy_of`.
     """
     defaults = Model.model_validate(model).plain()
     # The model has one value of these keys, and a simulation a list.
@@ -63,9 +64,9 @@ def resolve(simulation: Simulation | Mapping, model: Model | Mapping, accuracy: 
     if "profiles" in given:
         given["profiles"] = without_files(given["profiles"])
     numerical = {key: accuracy[key] for key in NUMERICAL_KEYS if key in accuracy}
-    # The accuracy that the user requires (promise) can only be kept if the spacing is free. It is
-    # given as dx or as spacing.fixed. A beta other than 0 also fixes it, because another spacing
-    # would change beta/dx.
+    # The accuracy that the user requires (promise) can only be kept if the spacing is free. A
+    # spacing may be given as dx or as spacing.fixed. A beta other than 0 also fixes it, because
+    # another spacing would change beta/dx.
     has_own_spacing = "dx" in given or "fixed" in given["spacing"] or any(given.get("beta", []))
     if "promise" in numerical and has_own_spacing:
         # NaN means that no accuracy is promised.
@@ -152,8 +153,9 @@ def _bounds_of_front_speeds(levels: np.ndarray, damping_ratio: float) -> np.ndar
 def _extent(scene: NamedScene, damping_ratio: float, profile: Mapping[str, Any]) -> float:
     """Return an upper bound on the distance from x = 0 that the fronts of a scene reach.
 
-    It is the sum of the distance of the farthest bump, where slip may start, the distance that a
-    front covers in the duration, and the width in which the Gaussian at x = 0 makes it faster.
+    The bound is the sum of the distance of the farthest bump, where slip may start, the distance
+    that a front covers in the duration, and the width in which the Gaussian at x = 0 makes it
+    faster.
 
     damping_ratio : largest damping ratio of the scene
     profile : the keys of the scene that describe its pre-stress
@@ -198,7 +200,7 @@ def with_ends_of_lists(simulation: Mapping) -> dict[str, Any]:
     if "profiles" in ends:
         ends["profiles"] = ends_of_ensembles(ends["profiles"])
     if "beyond" in ends:
-        # This mapping has a list of levels, which the pre-stress has beyond a step.
+        # ``beyond`` has a list of levels, which the pre-stress has beyond a step.
         ends["beyond"] = with_ends_of_lists(ends["beyond"])
     for key in ORDERED:
         if isinstance(ends.get(key), list):

@@ -115,7 +115,7 @@ def run_count(simulation: Mapping) -> int:
 
 
 def _axes(simulation: Mapping) -> dict[str, Collection]:
-    """Return the lists of a simulation by name. Its runs are all combinations of their entries."""
+    """Return the lists of a simulation by name. Each combination of their entries is a run."""
     # A list that is not given has one entry: its default, or None if something else sets the value.
     # The damping is the list of beta, or that of the damping ratio if there is no list of beta.
     release = simulation["release"]
@@ -156,20 +156,26 @@ def _prestress_axes(simulation: Mapping) -> dict[str, Collection]:
 
 
 def _spacing(simulation: Mapping, entry: Entry, index: int) -> float:
-    """Return the block spacing of a run, whose number from 0 is ``index``.
+    """Return the block spacing of a run.
 
-    The key ``spacing`` may fix it for all lattices. Otherwise it is the spacing for a required
-    accuracy (``spacings``) or an entry of the list ``dx``, or a rule in ``spacing`` gives it. It is
-    then larger by the factor ``coarser`` on the coarser lattices of a grid study.
+    If the key ``spacing`` of the simulation has a fixed value, all lattices have this spacing. If
+    not, the spacing is multiplied by the factor ``coarser`` on the coarser lattices of a grid
+    study.
+
+    index : number of the run, from 0
     """
     rule = simulation["spacing"]
     if "fixed" in rule:
         return float(rule["fixed"])
     if "spacings" in simulation:
+        # The list of `with_promised_spacings`, with the spacing of each run for an accuracy that
+        # the user requires.
         spacing = simulation["spacings"][index]
     elif entry.dx is not None:
+        # The simulation has a list ``dx``.
         spacing = entry.dx
     else:
+        # The preset has a spacing, which the rule adapts to the run.
         spacing = _scaled_spacing(simulation["accuracy"]["dx"], rule, entry)
     # Rounding errors of the product would show in the data and in labels.
     return float(f"{simulation['coarser'] * spacing:.12g}")

@@ -34,7 +34,7 @@ LIMITS = {"above": "gt", "at_least": "ge", "at_most": "le", "below": "lt"}
 class Block(BaseModel):
     """A mapping of the configuration.
 
-    It has only known keys, no value is converted to another type, and all numbers are finite.
+    A block has only known keys, no value is converted to another type, and all numbers are finite.
     """
 
     model_config = ConfigDict(
@@ -109,7 +109,7 @@ LAW = f"a mapping with law ({', '.join(LAW_NAMES)}) and its parameters"
 
 def _known_law(mapping: dict[str, Any]) -> dict[str, Any]:
     """Return the mapping of a friction law unchanged, or raise ValueError if it is not allowed."""
-    # This makes the law and raises the error.
+    # Making the law raises the error if the mapping is not allowed.
     friction_from(mapping)
     return mapping
 
@@ -207,7 +207,7 @@ class Rough(Block):
         lists = rough_lists(self.plain())
         first_values = {name: values[0] for name, values in lists.items()}
         for level in lists["level"]:
-            # This draws the background and raises the error.
+            # Drawing the background raises the error if a value is not allowed.
             rough(**(self.plain() | first_values | {"level": level}))
 
 
@@ -297,7 +297,7 @@ class Profile(Block):
         """Raise ValueError if the points or the rough background are not allowed."""
         if self.points is not None:
             try:
-                # This makes the pre-stress and raises the error.
+                # Making the pre-stress raises the error if the points are not allowed.
                 Prestress.through([x for x, _ in self.points], [tau for _, tau in self.points])
             except ValueError as error:
                 raise ValueError(str(error).removeprefix("prestress.")) from None

@@ -128,9 +128,10 @@ def draw(table: pd.DataFrame) -> Figure:
 
 
 def draw_transition(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
-    """Mark the measured transition, the paper's estimate of it, and the last release on the left.
+    """Mark the measured transition and the paper's estimate of it.
 
-    The exact front and trailing edge are drawn as well.
+    The exact front and trailing edge are drawn as well. Under a stress boundary, the last release
+    of the left front and the balance position x_minus are also marked.
 
     rows_by_role : rows of the table of the figure, by their role
     """
@@ -149,8 +150,9 @@ def draw_transition(axes: Axes, rows_by_role: dict[str, pd.DataFrame]) -> None:
     paper = rows_by_role["paper"]
     look = MARK_LOOK | {"color": ORANGE, "label": "paper's estimate"}
     axes.plot(paper["time"], paper["position"], "D", **look)
+    # Only runs under a stress boundary have this role.
     if "last_release" in rows_by_role:
-        # Under a stress boundary, the paper's estimate of the transition time is |x_minus|.
+        # The paper's estimate of the transition time is then |x_minus|.
         x_minus = -float(paper["time"].iloc[0])
         draw_last_release(axes, rows_by_role["last_release"].iloc[:1], x_minus)
 

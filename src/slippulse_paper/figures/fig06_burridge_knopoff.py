@@ -103,8 +103,8 @@ def block_states(run: xr.Dataset) -> pd.DataFrame:
 def displacement_scale(rows: pd.DataFrame) -> float:
     """Return the factor that converts slip to the displacement of a drawn block, in block spacings.
 
-    It is the largest factor that keeps each block within MAX_DRAWN_DISPLACEMENT of its position at
-    rest, and each spring longer than MIN_DRAWN_SPRING times its length at rest.
+    The result is the largest factor that keeps each block within MAX_DRAWN_DISPLACEMENT of its
+    position at rest, and each spring longer than MIN_DRAWN_SPRING times its length at rest.
 
     rows : blocks at each instant (column row), from left to right
     """

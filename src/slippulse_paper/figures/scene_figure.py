@@ -34,7 +34,7 @@ def table(
 ) -> pd.DataFrame:
     """Return everything that the figure shows, with a role in each row.
 
-    These are the roles of `run_table`, and:
+    The roles are those of `run_table`, and:
 
     title : the title of the scene
     profile : a field at the end of the run, as a function of position
@@ -44,7 +44,7 @@ def table(
     Parameters
     ----------
     numbers : table from `main_numbers.scene_numbers`; in SI units if there is a layer
-    theory : measured and predicted numbers of the run
+    theory : row of the run with its measured and predicted numbers
     title : title of the scene
     layer : if given, the table is converted to SI units
     """

@@ -136,6 +136,7 @@ def _draw_map(
 
     fine : exact depths at gamma = 1, on a fine grid of levels
     runs : depths on lattices; they are scaled to gamma = 1
+    depth_range : smallest and largest depth in the colour scale
     """
     smallest, largest = depth_range
     # The largest depth is not the darkest colour, so that dark lines are visible on it.

@@ -45,7 +45,7 @@ COLUMNS += ["springs", "held", "fixed"]
 def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.DataFrame:
     """Return the exact lines of the study front_law (role theory) and runs (role simulation).
 
-    The column panel names the panel of a row: prestress, springs or refined. Its value limit marks
+    The column panel names the panel of a row: prestress, springs or refined. The value limit marks
     exact limits dx -> 0, which are not drawn. A run has its measured speed, its theoretical speed
     (theory), and the paper's speed without damping (undamped). The column sound is True if the run
     has no flag and meets the conditions of the theory.

@@ -127,7 +127,8 @@ def _crossing_width(
 ) -> float | pd.Series:
     """Return the distance behind the tip at which shear waves from the top reach the fault.
 
-    It is in layer thicknesses. By default, the tip runs at the speed 1 of the longitudinal wave.
+    The distance is in layer thicknesses. By default, the tip runs at the speed 1 of the
+    longitudinal wave.
     """
     return np.sqrt(2.0 * tip_speed**2 / gamma - 1.0)
 

@@ -30,6 +30,7 @@ NEEDS = {"lists": ["results/claims.json"]}
 NUMERIC_KINDS = ("exact", "approximate", "scaling")
 # A deviation below this fraction of the tolerance is shown as an upper bound.
 MIN_SHOWN_RATIO = 1e-2
+# Colours of the choice on which the verdict depends most.
 CHOICE_LOOKS: dict[str, Look] = {
     "fraction": {"color": ORANGE, "label": "fraction of the path"},
     "damping_ratio": {"color": BLUE, "label": r"damping ratio $b$"},
@@ -37,6 +38,7 @@ CHOICE_LOOKS: dict[str, Look] = {
     "release": {"color": GREEN, "label": "release rule"},
     "": {"color": GREY, "label": "no open choice"},
 }
+# Markers of claims that are judged by exact theory ("exact") or by runs ("lattice").
 SOLUTION_MARKERS: dict[str, Look] = {
     "exact": {"marker": "o"},
     "lattice": {"marker": "s"} | OPEN_MARKER,
@@ -72,7 +74,8 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
 def draw(table: pd.DataFrame) -> Figure:
     """Draw deviations divided by tolerances, with one row of markers for each claim.
 
-    The claim with the largest value is on top.
+    The claim with the largest value is on top. The legend explains the colours, which stand for
+    open choices, and the markers, which stand for exact theory or lattice runs.
     """
     # A CSV file has NaN in place of an empty text.
     table = table.fillna({"choice": "", "release": ""})

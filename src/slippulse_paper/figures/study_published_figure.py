@@ -173,7 +173,8 @@ def _draw_chi2(
 def _point_to_notebook(axes: Axes, notebook: pd.DataFrame, top: float) -> None:
     """Mark the damping ratio of the authors' notebook, which uses the rule of the total force.
 
-    Its chi-square is far above the top of the axes, so that a marker at the top points upwards.
+    The chi-square of the notebook is far above the top of the axes, so that a marker at the top
+    points upwards.
 
     notebook : the fit with the settings of the notebook, with one row per reading
     """

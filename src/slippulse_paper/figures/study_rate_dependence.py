@@ -69,8 +69,8 @@ def _draw_maps(axes: Axes, rows: pd.DataFrame) -> None:
 def _draw_arrest(axes: Axes, lattices: pd.DataFrame, asymptotes: pd.DataFrame) -> None:
     """Draw how the largest velocity decays without leaf springs, on the finest lattice.
 
-    The line is the asymptote of this decay at long times. It is the same for every rate
-    strengthening, and is drawn from the weakest one.
+    The line is the asymptote of this decay at long times. The asymptote is the same for every rate
+    strengthening, and is drawn for the weakest one.
     """
     finest = lattices[lattices["dx"] == lattices["dx"].min()]
     groups = finest.groupby("rate_strengthening")

@@ -2,8 +2,8 @@
 
 With the displacement held (Gamma = 1), barriers of the pre-stress stop pulses. With the stress held
 (Gamma = 0), the velocity of a pulse performs a random walk. An ensemble is a set of runs whose
-pre-stress is drawn from the same random field. It has one colour and one marker, and is named by
-the four parameters of the field.
+pre-stress is drawn from the same random field. An ensemble has one colour and one marker, and is
+named by the four parameters of the field.
 """
 
 from collections.abc import Iterator

@@ -121,6 +121,8 @@ def _draw_slip(
 
     A pulse remembers the old level only up to a finite distance beyond the step, its memory. From
     there on, its slip is exactly that of the steady pulse.
+
+    marked : the points of the lattice
     """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
     axes.plot(exact["x"], exact["slip"], color=colour, label=label)
@@ -134,7 +136,8 @@ def _draw_deviation(
     """Draw the relative deviation of slip from the new steady slip, as a function of distance.
 
     The distance beyond the step is in units of the memory, the distance over which a pulse
-    remembers the old level. The exact slip is drawn as a line, and the lattice as markers.
+    remembers the old level. The exact slip is drawn as a line, and some points of the lattice
+    (``marked``) as markers.
     """
     steady, memory = exact["steady"].iloc[0], exact["memory"].iloc[0]
     # Beyond the memory the exact deviation is 0. The line ends at the first point beyond it.
@@ -165,8 +168,8 @@ def _finish_deviation(axes: Axes) -> None:
 def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     """Draw the largest velocity as a function of time, with one line for each level.
 
-    A line has the colour of growth, decay or neither. Its level is written at its end, or where it
-    leaves the panel.
+    A line has the colour of growth, decay or neither. The level of a line is written at its end, or
+    where the line leaves the panel.
     """
     # The velocity of a dead pulse is 0, which a logarithmic axis cannot show.
     rows = rows[rows["largest_velocity"] > 0.0]

@@ -200,7 +200,7 @@ class RecordedFiles:
     def older_than_inputs(self) -> set[str]:
         """Return the files that were made from an older version of one of their inputs.
 
-        This includes files that were made from such files.
+        The result includes files that were made from such files.
         """
         states, jobs = self.states(), self._jobs()
         older: set[str] = set()

@@ -18,8 +18,8 @@ def package_problem(lock: str | Path) -> str:
     for name, locked_version in re.findall(r"^([\w.-]+)==([^\s;\\]+)", text, re.M):
         locked_versions[name].add(locked_version)
     for name, versions in locked_versions.items():
-        # The file also lists packages that only other systems or versions of Python need. They are
-        # not installed here.
+        # The file also lists packages that only other systems or versions of Python need. These
+        # packages are not installed here.
         with suppress(PackageNotFoundError):
             if version(name) not in versions:
                 allowed = f"{' or '.join(sorted(versions))}, as in requirements.lock"

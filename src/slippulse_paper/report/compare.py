@@ -141,7 +141,7 @@ def _table_names(results: Path) -> set[str]:
 def _compare_contents(result: Comparison, new: Path, old: Path, name: str) -> None:
     """Record in the result how the configurations or the verdicts of both folders differ.
 
-    They are not compared if a file is missing or older than other results.
+    The contents are not compared if a file is missing or older than other results.
 
     name : "provenance.json" for the configurations, "claims.json" for the verdicts
     """
@@ -219,8 +219,10 @@ def _numbers_of_joined_runs(
 ) -> pd.DataFrame:
     """Compare the numbers of runs that are the same, and list the numbers of altered runs.
 
-    The numbers of altered runs are not judged, because they are expected to differ.
+    A pair of altered runs is a new and an old run that differ only in parameters that were changed
+    for the whole table. Their numbers are not judged, because they are expected to differ.
 
+    joined : pairs of runs of the two tables, as labels of their rows
     new, old : all runs of the new and of the old table
     parameters : columns that describe a run
     """

@@ -90,7 +90,10 @@ def with_uncertainties(table: pd.DataFrame, numbers: list[str], study: Path) -> 
 
 
 def differing_texts(new: MeasuredRuns, old: MeasuredRuns, columns: list[str]) -> Iterator[str]:
-    """Yield a line for each text in some columns that differs between runs on equal lattices."""
+    """Yield a line for each text in some columns that differs between runs on equal lattices.
+
+    new, old : the paired runs, in the same order
+    """
     new_texts = new.table[columns].astype(object).fillna("")
     old_texts = old.table[columns].astype(object).fillna("")
     is_same_lattice = _is_same_lattice(new, old)
@@ -145,7 +148,10 @@ def compare_numbers(
 def list_altered_numbers(
     new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]
 ) -> pd.DataFrame:
-    """Return the numbers of altered runs in the form of `compare_numbers`, but without judging."""
+    """Return the numbers of altered runs in the form of `compare_numbers`, but without judging.
+
+    The arguments are those of `compare_numbers`.
+    """
     numbers = compare_numbers(new, old, parameters)
     return numbers.dropna(subset=["new", "old"]).assign(outcome=ALTERED)
 
@@ -153,7 +159,8 @@ def list_altered_numbers(
 def _list_numbers(new: MeasuredRuns, old: MeasuredRuns, parameters: Iterable[str]) -> pd.DataFrame:
     """Return one row for each number of each pair of runs, with the allowed difference.
 
-    The allowed difference is the sum of both uncertainties, and a little more for rounding.
+    The allowed difference is the sum of both uncertainties, and a little more for rounding. The
+    arguments are those of `compare_numbers`.
     """
     quantities = new.numbers.columns
     parameters = list(parameters)
@@ -205,7 +212,7 @@ def _read_table(path: Path, required: Iterable[str]) -> pd.DataFrame:
 def _read_uncertainties(path: Path, numbers: pd.DataFrame) -> pd.DataFrame:
     """Return the uncertainty of each number by a grid study.
 
-    It is NaN if the study does not have the number, or has another value for it.
+    The uncertainty is NaN if the study does not have the number, or has another value for it.
 
     path : table of the grid study, which may not exist
     numbers : table with one row for each run (point) and one column for each quantity

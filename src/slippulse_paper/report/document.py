@@ -58,7 +58,7 @@ def _lower_headings(html: str) -> str:
 def _make_scrollable(html: str) -> str:
     """Return HTML in which wide formulas, code and tables can be scrolled sideways.
 
-    They get a tab index, so that the keyboard can scroll them, too.
+    These elements get a tab index, so that the keyboard can scroll them, too.
     """
     html = re.sub('<math display="block"|<pre', lambda tag: f'{tag[0]} tabindex="0"', html)
     # Put each table into a region that scrolls, with a number as its label.

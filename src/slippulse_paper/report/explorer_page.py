@@ -84,8 +84,8 @@ def front_law(law: pd.DataFrame) -> dict:
 def simulated_runs(table: pd.DataFrame, largest_ratio: float) -> list[list]:
     """Return the settings and measured numbers of the runs that the page can compute, too.
 
-    These are runs with the displacement held, Coulomb friction, and a Gaussian on equal positive
-    levels. Each has one list, with the values of `SETTING_COLUMNS` and `MEASURED_COLUMNS`.
+    The page can compute runs with the displacement held, Coulomb friction, and a Gaussian on equal
+    positive levels. Each has one list, with the values of `SETTING_COLUMNS` and `MEASURED_COLUMNS`.
 
     largest_ratio : the largest damping ratio of the page
     """

@@ -1,7 +1,7 @@
 """Write results/index.html, the page to open first.
 
-It begins with a table of the paper's statements and their verdicts, followed by the figures, the
-scenes and the provenance. All links are relative, and the page loads nothing from outside.
+The page begins with a table of the paper's statements and their verdicts, followed by the figures,
+the scenes and the provenance. All links are relative, and the page loads nothing from outside.
 """
 
 import json

@@ -162,8 +162,8 @@ def describe_pair(new: Mapping, old: Mapping, names: Iterable[str]) -> str:
 def varying_parameters(new: pd.DataFrame, old: pd.DataFrame) -> list[str]:
     """Return the parameters that describe a run of two tables.
 
-    These are the parameters that have several values. The derived ones (beta and duration) count
-    only if no other one varies. If none varies, these are the first few parameters.
+    The parameters that have several values describe a run. The derived ones (beta and duration)
+    count only if no other one varies. If none varies, the first few parameters describe a run.
     """
     names = columns_in_both(new, old, [*RUN_COLUMNS, *NEWER_RUN_COLUMNS, "dx"])
     value_counts = pd.concat([new[names], old[names]]).nunique(dropna=False)

@@ -235,7 +235,7 @@ def _first_claim_and_subjects_by_verdict(
 ) -> list[tuple[Entry, str]]:
     """Return, for each verdict, the first claim that has it, and the subjects of all such claims.
 
-    The subjects are a text in brackets. It is empty if all claims have the same verdict.
+    The subjects are a text in brackets. This text is empty if all claims have the same verdict.
 
     subjects : what each claim is about, by the id of the claim
     """

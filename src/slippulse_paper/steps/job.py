@@ -83,7 +83,7 @@ def run_job(job: Job) -> None:
             raise ChangedFile(f"{changed_source}: changed since this run was planned; run again")
         seconds = round(time.monotonic() - began, 2)
         _write_records(job, configuration, input_states, seconds)
-    # A terminal shows a progress bar instead of the logs.
+    # In a terminal, a progress bar is shown instead of the logs.
     if not sys.stderr.isatty():
         log = Path(job.log).read_text(encoding="utf-8")
         sys.stderr.write(f"{log}  {job.name}: {seconds} s\n")
@@ -152,8 +152,10 @@ def progress_writer(stream: TextIO, name: str) -> Callable[[float, int], None]:
 def logged(path: str | Path) -> Iterator[TextIO]:
     """Redirect the standard error of a job to its log, and yield a stream for its progress.
 
-    If the job raises an exception, write the traceback to a separate file, and raise JobFailed with
-    the reason in one line.
+    A terminal shows a progress bar of the whole run, which lines on the progress of a job would
+    interrupt. So these lines go to the log if standard error is a terminal, and otherwise to
+    standard error. If the job raises an exception, write the traceback to a separate file, and
+    raise JobFailed with the reason in one line.
     """
     # Snakemake prints the log of a failed job, and so the traceback has a separate file.
     terminal, details = sys.stderr, Path(path).with_suffix(".traceback")
@@ -166,7 +168,6 @@ def logged(path: str | Path) -> Iterator[TextIO]:
         raise JobFailed(f"{path}: {error.strerror}; allowed: {allowed}") from None
     sys.stderr = log
     try:
-        # A terminal shows a progress bar, which other lines would interrupt.
         yield log if terminal.isatty() else terminal
     except KeyboardInterrupt:
         raise JobFailed("stopped") from None

@@ -49,7 +49,8 @@ def join_tables(paths: Sequence[str | Path], joined: str | Path) -> None:
     """Join the tables of the chunks of a sweep, which have one row for each run.
 
     A table of coarser lattices has one row for each run and lattice, sorted by the lattice first.
-    Its last column ``factor`` has the factor by which the spacing of the lattice is larger.
+    The last column ``factor`` of such a table has the factor by which the spacing of the lattice is
+    larger.
     """
     chunks = _read_as_text(paths)
     has_factor = "factor" in chunks[0]

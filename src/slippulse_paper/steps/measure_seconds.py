@@ -80,7 +80,8 @@ def _mean_pulse_seconds(setting: Setting) -> float:
 
 def _simulation_with_quantity(quantity: str) -> str:
     """Return the simulation that gives a quantity, "crack" or "pulse"."""
-    # This quantity is the time at which the crack's left front has covered 95 % of its path.
+    # The quantity share_time is the time at which a crack's left front has covered 95 % of its
+    # path.
     return "crack" if quantity == "share_time" else "pulse"
 
 

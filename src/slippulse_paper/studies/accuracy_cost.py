@@ -27,7 +27,7 @@ from slippulse.theory.pulse import steady_pulse
 NEEDS = {"settings": ["measure.front_window", "presets"]}
 
 # Pulses under a displacement boundary, one without damping and one with the damping ratio of the
-# paper's figures. Both become steady within the duration.
+# paper's figures. Both pulses become steady within the duration.
 UNIFORM_PRESTRESS = Prestress(0.55, 0.55)
 GAMMA = 0.65
 DAMPING_RATIOS = (0.0, 0.1)
@@ -98,7 +98,7 @@ class Setting(NamedTuple):
     ) -> xr.Dataset:
         """Simulate a scene with this setting, or with a shorter step if its step is unstable.
 
-        It has a displacement boundary, or a stress boundary if ``gamma`` is 0.
+        The scene has a displacement boundary, or a stress boundary if ``gamma`` is 0.
         """
         # The textbook scheme and the exact solution do not use the order, but a Scene needs one.
         order = max(self.order, 3)

@@ -59,8 +59,8 @@ def displacements(role: str, slip: float) -> pd.DataFrame:
     The top of the rock has the imposed displacement.
     """
     # The formula returns the stress for any displacement between bottom and top of both layers. For
-    # a stress drop this displacement is the slip. Here it is the imposed displacement minus the
-    # slip.
+    # a stress drop this displacement is the slip. In this figure, it is the imposed displacement
+    # minus the slip.
     stress = float(
         damage_zone_stress_drop(
             slip=IMPOSED_DISPLACEMENT - slip,

@@ -90,7 +90,7 @@ def rows_by_position(compute_rupture: Callable[[], Rupture]) -> list[tuple[str, 
     """Return rows (quantity, x, value) of release time, stick time and final slip at POSITIONS.
 
     The values are NaN if ``compute_rupture`` raises an error, because there is no exact rupture.
-    It returns the same rupture at each call, and computes it only once.
+    This function returns the same rupture at each call, and computes it only once.
     """
     rows = []
     for quantity in ("release_time", "stick_time", "final_slip"):
@@ -132,8 +132,9 @@ def one_way_functions(
 ) -> NumberFunctions:
     """Return the numbers of a rupture with one pulse, to the right, each as a function to call.
 
-    The left front stops, because the pre-stress is -``level`` on the left. Its stop is NaN if it
-    comes after ONE_WAY_DURATION. The functions of the transition raise an error if there is none.
+    The left front stops, because the pre-stress is -``level`` on the left. The position and the
+    time of its stop are NaN if it stops after ONE_WAY_DURATION. The functions of the transition
+    raise an error if there is none.
     """
     prestress = Prestress(-level, level)
     rupture = Rupture(prestress, gamma, damping_ratio, release, ONE_WAY_DURATION)

@@ -95,8 +95,8 @@ def _lattice_markers(run: xr.Dataset) -> pd.DataFrame:
 def _compared_positions(rupture: Rupture) -> np.ndarray:
     """Return the positions at which lattices are compared with the exact solution.
 
-    They cover a fraction of the path of the left front and of that of the right front. The fraction
-    is smaller for a front that stops, because it stops abruptly.
+    The positions cover a fraction of the path of the left front and of that of the right front. The
+    fraction is smaller for a front that stops, because it stops abruptly.
     """
     left_end, right_end = outermost_fronts(rupture)
     left_fraction = RUNNING_FRONT_FRACTION
@@ -168,8 +168,9 @@ def _sliding_velocities(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return slip velocities on the lattice, and the exact ones at the same positions and times.
 
-    These are all samples of the run between the positions ``first`` and ``last`` that slide, except
-    those within EDGE_LAYER_TIME of a release or a stick, which a lattice does not resolve.
+    The velocities are all samples of the run between the positions ``first`` and ``last`` that
+    slide, except those within EDGE_LAYER_TIME of a release or a stick, which a lattice does not
+    resolve.
     """
     positions, times = run["sample_position"].values, run["sample_time"].values
     columns = np.flatnonzero((positions >= first) & (positions <= last))

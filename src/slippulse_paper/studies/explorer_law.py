@@ -14,8 +14,8 @@ NEEDS = {"sweeps": ()}
 
 # The grid has even steps of ln(v - 1), where v is the front speed.
 LOG_EXCESS_SPEEDS = np.linspace(-8.0, 12.0, 61)
-# Its other coordinate is the damping ratio b, in even steps of asinh(b/RATIO_SCALE). This function
-# is linear where b is smaller than RATIO_SCALE, and logarithmic where b is larger.
+# The other coordinate of the grid is the damping ratio b, in even steps of asinh(b/RATIO_SCALE).
+# This function is linear where b is smaller than RATIO_SCALE, and logarithmic where b is larger.
 RATIO_SCALE = 0.005
 LARGEST_RATIO = 5.0
 RATIO_COUNT = 33

@@ -98,7 +98,8 @@ class Case:
     def expected(self) -> float:
         """Return the value that the quantity should have; NaN if the case is refused or stopped.
 
-        It is 0 for quantities that are errors, drifts, or counts of events that should not happen.
+        The value is 0 for quantities that are errors, drifts, or counts of events that should not
+        happen.
         """
         if self.expected_verdict in (REFUSED, STOPPED):
             return math.nan
@@ -111,8 +112,8 @@ class Case:
         if self.quantity not in ("front speed", "final slip"):
             return 0.0
         if self.family == "gamma":
-            # These cases are undamped, and their speed depends on gamma dx^2. It is NaN if no front
-            # is faster than the waves.
+            # These cases are undamped, and their speed depends on gamma dx^2. The speed is NaN if
+            # no front is faster than the waves.
             return value_or_nan(lambda: lattice_front_speed(self.level, self.gamma, self.dx))
         pulse = steady_pulse(
             self.level,

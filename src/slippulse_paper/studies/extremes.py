@@ -231,8 +231,8 @@ def mean_front_speed(run: xr.Dataset, start: float, end: float) -> float:
 def single_precision_error(case: Case) -> float:
     """Return the relative error of the slip velocity of a crack in single precision.
 
-    This is the largest difference from the same computation in double precision, divided by the
-    largest velocity.
+    The error is the largest difference from the same computation in double precision, divided by
+    the largest velocity.
     """
     in_double = crack_velocity(case, np.float64)
     in_single = crack_velocity(case, np.float32)

@@ -130,7 +130,8 @@ def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
     ):
         law = SlipWeakening(d_c=distance_over_dx * dx, nucleation=NUCLEATION_HALF_LENGTH)
         exact_speed = np.nan
-        # At a relative strength of 1 the fracture energy is as large as the released energy.
+        # At a relative strength of 1 the fracture energy is as large as the released energy. From
+        # there on, no rupture exists.
         if _relative_strength(level, law) < 1.0:
             exact_speed = cached_pulse(level, GAMMA, BETA, law.d_c).speed
         row = _simulated_row(

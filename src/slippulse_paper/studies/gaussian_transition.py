@@ -1,6 +1,6 @@
 """Tabulate exact transition times without damping, divided by the paper's formula.
 
-They depend on how the rupture begins: at a single point, or at a Gaussian of the pre-stress.
+Exact times depend on how the rupture begins: at a single point, or at a Gaussian of the pre-stress.
 """
 
 import numpy as np

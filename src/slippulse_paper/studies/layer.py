@@ -1,10 +1,10 @@
 """Simulate the layer in two dimensions, and compare its pulses with the paper's formulas.
 
 The layer has the height 1. The fault is its bottom, whose strength falls linearly with slip, from 1
-to 0 over the slip d_c (weakening). So the fracture energy is d_c/2. It is given as a fraction of
-G_0 = tau_0^2/(2 gamma), the energy that a unit length of the layer releases if its stress falls
-from the pre-stress to 0. A run is measured at several positions on the fault, which are called
-stations, and repeated on finer grids.
+to 0 over the slip d_c (weakening). So the fracture energy is d_c/2. This energy is given as a
+fraction of G_0 = tau_0^2/(2 gamma), the energy that a unit length of the layer releases if its
+stress falls from the pre-stress to 0. A run is measured at several positions on the fault, which
+are called stations, and repeated on finer grids.
 """
 
 import math
@@ -150,9 +150,11 @@ def pulse_rows(gamma: float) -> Rows:
 def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     """Return the rows of one pulse at STATION_POSITIONS and, on some grids, at FAR_STATIONS.
 
-    On the grids of `grids_far_away` the run is so long that the pulse passes FAR_STATIONS. If the
-    pulse splits, the run on the next finer grid is long, too, and there are two damped long runs.
+    There is one run on each grid. On the grids of `grids_far_away`, it is so long that the pulse
+    passes FAR_STATIONS. If the pulse splits in a long run, the run on the next finer grid is also
+    long, and damped runs of this length are added on two grids.
     """
+    # All lengths are proportional to the width of the pulses, which grows as gamma falls.
     positions = [station * stretch(scene.gamma) for station in STATION_POSITIONS]
     coarsest = CELLS[0]
     # The run on the coarsest grid shows how long the runs to near and far stations must be.
@@ -166,8 +168,8 @@ def near_and_far_rows(scene: LayerScene) -> tuple[Rows, Rows]:
     if coarsest in far_grids:
         far_rows += rows_at_far_stations("far", far_scene, simulate_layer(far_scene))
     for cells in finer_grids(near_scene):
-        # Each row has the split_position of its run, so the last row shows if the pulse split on
-        # the grid before.
+        # The last row belongs to the finest grid with a long run so far, and has the split_position
+        # of this run.
         split_on_coarser_grid = bool(far_rows) and math.isfinite(far_rows[-1]["split_position"])
         is_followed_far = split_on_coarser_grid or cells in far_grids
         scene = replace(far_scene if is_followed_far else near_scene, cells=cells)
@@ -239,8 +241,9 @@ def grids_far_away(scene: LayerScene) -> Sequence[int]:
 def extended(scene: LayerScene, speed: float) -> LayerScene:
     """Return a longer scene, in which the pulse passes the last of FAR_STATIONS.
 
-    In the given scene it passes the last of STATION_POSITIONS. The trail is the length behind the
-    waves in which the layer is computed. It grows as far as the front falls behind the waves.
+    In the given scene the pulse passes the last of STATION_POSITIONS. The trail is the length
+    behind the waves in which the layer is computed. The trail grows as far as the front falls
+    behind the waves.
 
     speed : front speed of the pulse
     """
@@ -284,9 +287,9 @@ def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int 
 def patch_rows(gamma: float) -> Rows:
     """Return one row for each grid, with the time at which the nucleation region sticks.
 
-    This is the region without friction around x = 0, in which the rupture starts. The column
-    strip_first_stick has the time at which an infinite layer (a strip) that slides uniformly would
-    stick. In this time a shear wave runs to the top of the layer and back.
+    The nucleation region is the region without friction around x = 0, in which the rupture starts.
+    The column strip_first_stick has the time at which an infinite layer (a strip) that slides
+    uniformly would stick. In this time a shear wave runs to the top of the layer and back.
     """
     # The unit of speed is the compressional wave speed, and gamma is 2 G/(lambda + 2 G).
     shear_wave_speed = math.sqrt(0.5 * gamma)

@@ -99,7 +99,7 @@ def outcome(slips: Mapping[str, float]) -> str:
     """Classify the pulses of one point of the map, from their slips along the path.
 
     A pulse is named by where it forms: uniform (in the final pre-stress), from_below (in a lower
-    one) or from_above. Its slip at the last position is in NAME_slip, and halfway in
+    one) or from_above. The slip of this pulse at the last position is in NAME_slip, and halfway in
     NAME_slip_halfway. The steady slip is uniform_slip.
 
     dying : the slip in uniform pre-stress falls along the path

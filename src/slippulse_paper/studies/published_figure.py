@@ -4,7 +4,7 @@ A reading is a number that was read off the figure, such as the position of the 
 time. A trial is a pair (tau_0, gamma), and has a value for each reading. This value is taken from a
 lattice run, because the figure was drawn from a lattice with a finite spacing. The table also has
 the value of the exact solution, and the correction, which is the lattice value minus the exact one.
-It is largest for the largest velocity, which is still growing when the figure ends.
+The correction is largest for the largest velocity, which is still growing when the figure ends.
 """
 
 from functools import cache
@@ -81,8 +81,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
         left_panel_rows(panel, release, part)
         for release, part in product(RELEASES, ("profile", "arrows"))
     ]
-    # The damping ratio of the notebook is larger than those of the fits with its release rule. Its
-    # fit begins at the result for the largest of these, which is in the last row.
+    # The damping ratio of the notebook is larger than those of the fits with its release rule. The
+    # fit of the notebook begins at the result for the largest of these, which is in the last row.
     profiles = pd.concat(parts).query("part == 'profile'")
     closest = profiles[profiles["release"] == NOTEBOOK_RELEASE].iloc[-1]
     guess = closest[["tau0", "gamma"]].to_numpy(float)

@@ -95,8 +95,8 @@ def published_run() -> xr.Dataset:
 def measured_quantities(run: xr.Dataset, front_window: float) -> list[float]:
     """Return the values of QUANTITIES on a lattice.
 
-    They are the speed of the right front over the last part of its path, the time of the first
-    stick, and the slip of the outermost block on the right that has stuck.
+    QUANTITIES are the speed of the right front over the last part of its path, the time of the
+    first stick, and the slip of the outermost block on the right that has stuck.
 
     front_window : last fraction of the path over which the front speed is measured
     """

@@ -47,7 +47,7 @@ def rows_of_scene(scene: Scene) -> pd.DataFrame:
     }
     pulse_before = steady_pulse(before, scene.gamma, **front_parameters)
     pulse_beyond = steady_pulse(level, scene.gamma, **front_parameters)
-    # A pulse forgets what it met after this distance.
+    # After this distance, a pulse has forgotten what it met.
     memory = pulse_beyond.width / (pulse_beyond.speed - 1.0)
     x = np.concatenate([DISTANCES_BEFORE, memory * DISTANCES_BEYOND])
     slip = exact_rupture(scene).final_slip(position + x)

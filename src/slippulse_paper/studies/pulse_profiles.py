@@ -36,8 +36,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
 def displacement_profile(run: Run) -> pd.DataFrame:
     """Return the exact steady pulse under a displacement boundary.
 
-    Its curves have sharp corners at the front and at the trailing edge. There are points on both
-    sides of each corner.
+    The curves of this pulse have sharp corners at the front and at the trailing edge. There are
+    points on both sides of each corner.
     """
     level, damping_ratio = run.prestress.right, run.damping_ratio
     pulse = steady_pulse(

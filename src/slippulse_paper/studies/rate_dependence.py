@@ -37,8 +37,8 @@ LEVELS = (0.2, 0.35, 0.5, 0.65, 0.8)
 CRITICAL_FRACTIONS = (-1.1, -1.05, -0.95, -0.9, -0.5, 0.0, 0.5, 0.9, 0.95, 1.05, 1.1, 1.5)
 # Spacing divided by the level, because the pulse width is proportional to the level.
 SPACING_OVER_LEVEL = 0.12
-# Order and largest time step divided by dx. They are so accurate that velocities behind a crack
-# decay until they are as small as rounding errors.
+# Order, and largest time step divided by dx. Both are chosen so accurate that velocities behind a
+# crack decay until they are as small as rounding errors.
 ORDER, MAX_STEP = 8, 0.25
 # The time in which a pulse becomes steady is inversely proportional to v - 1, the excess of the
 # front speed over the wave speed. A run lasts at least as long as MEMORY_TIMES/(v - 1), and at
@@ -90,7 +90,7 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     maps = []
     for regime, fraction in MAPPED_FRACTIONS.items():
         maps.append(_velocity_map(regime, fraction * critical_alpha))
-    arrests = [_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]
+    arrests = [_simulated_arrest(alpha, dx) for alpha, dx in product(ALPHAS, SPACINGS)]
     parts = {
         "lattice": _lattice_rows(still_fraction),
         "limit": _critical_rate_strengthenings(),
@@ -238,7 +238,7 @@ def _velocity_map(regime: str, alpha: float) -> pd.DataFrame:
     return rows.assign(regime=regime, rate_strengthening=alpha, level=SHOWN_LEVEL)
 
 
-def _arrest(alpha: float, dx: float) -> pd.DataFrame:
+def _simulated_arrest(alpha: float, dx: float) -> pd.DataFrame:
     """Simulate a rupture without leaf springs, and return its left front and largest velocity.
 
     There is one row for each of TIMES. The column gap has the distance from the left front to

@@ -408,8 +408,8 @@ def crest_position(run: Recorded, integral: np.ndarray) -> float:
 def start_of_left_running_wave(run: Recorded, position: float) -> float:
     """Return where a wave that runs to the left started on the right front.
 
-    Its speed is 1. If it left the front at the position X and the time t, it is at X + t - end_time
-    at the end.
+    The speed of a wave is 1. If it left the front at the position X and the time t, it is at X + t
+    - end_time at the end.
 
     position : position of the wave at the end
     """

@@ -76,7 +76,7 @@ def critical_depth(
 ) -> float:
     """Return the exact depth to which a pulse enters a barrier.
 
-    It is computed only once for all ensembles that have the same level.
+    The depth is computed only once for all ensembles that have the same level.
     """
     return barrier_depth(level, barrier, gamma, damping_ratio, release)
 
@@ -84,7 +84,7 @@ def critical_depth(
 def diffusivity(parameters: Mapping[str, Any]) -> float:
     """Return the variance of the integral of a rough field over a long distance, per distance.
 
-    This is 2 pi S(0), where S(k) is the power spectrum of the field. S(k) is proportional to
+    The result is 2 pi S(0), where S(k) is the power spectrum of the field. S(k) is proportional to
     (1 + k^2 l^2)^-(H + 1/2), where l is the correlation length and H the Hurst exponent. The
     integral of S(k) over all k is the variance of the field. From this follows
     S(0) = variance l Gamma(H + 1/2)/(sqrt(pi) Gamma(H)).

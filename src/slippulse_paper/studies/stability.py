@@ -29,7 +29,8 @@ DAMPING_RATIOS = (0.0, 0.01, 0.1, 1.0, 10.0, 100.0)
 SMALLEST_FRACTION, LARGEST_FRACTION = 0.7, 12.0
 RELATIVE_ACCURACY = 0.01
 # Numbers of sliding blocks on each side of x = 0, and of time steps. An unstable wave grows from
-# rounding errors to a visible size in so many steps. This is before a wave has crossed the blocks.
+# rounding errors to a visible size in so many steps. At that time, no wave has crossed the blocks
+# yet.
 BLOCK_COUNT, STEP_COUNT = 400, 400
 # At this pre-stress no block is ever released. Walls of it enclose the sliding blocks.
 HELD_PRESTRESS = -1.0e9
@@ -49,7 +50,7 @@ PROFILES = {
 class StableFraction(NamedTuple):
     """The largest stable step divided by the derived limit.
 
-    place : "within" if the bisection found the fraction. It is "below" if even the smallest
+    place : "within" if the bisection found the fraction. The text is "below" if even the smallest
         fraction is unstable, or "above" if even the largest one is stable. The fraction is then
         the smallest or the largest one.
     """

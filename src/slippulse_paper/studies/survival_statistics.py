@@ -108,7 +108,7 @@ def poisson_interval(count: int) -> tuple[float, float]:
 def fraction_interval(count: int, total: int) -> tuple[float, float]:
     """Return the exact (Clopper-Pearson) confidence interval of the fraction count/total.
 
-    It is 0 to 1 if ``total`` is 0.
+    The interval is 0 to 1 if ``total`` is 0.
     """
     low, high = 0.0, 1.0
     if count > 0:

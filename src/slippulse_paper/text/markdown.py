@@ -107,7 +107,8 @@ def harmless(text: str) -> str:
     The result is one line, and safe in a page, in the report and in a cell of a table.
     """
     parts, end_of_last = [], 0
-    # KEPT finds formulas and web links, which stay as they are.
+    # KEPT finds formulas and web links, which stay as they are. Emphasis is marked by signs that
+    # `_escaped` does not change.
     for kept in KEPT.finditer(text):
         parts += [_escaped(text[end_of_last : kept.start()]), kept[0]]
         end_of_last = kept.end()

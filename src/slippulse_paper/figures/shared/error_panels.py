@@ -28,8 +28,8 @@ def error_rows(
 ) -> pd.DataFrame:
     """Return the error and the cost of each quantity with the settings that a figure draws.
 
-    A setting is a scheme with its order, time step and block spacing. It has one row for each of
-    these roles (column role) that it plays:
+    A setting is a scheme with its order, time step and block spacing. A setting has one row for
+    each of these roles (column role) that it plays:
 
     textbook : a setting of the textbook scheme
     preset : a setting that is a preset
@@ -64,7 +64,7 @@ def error_rows(
 def _smallest_error_of_cheaper(rows: pd.DataFrame) -> pd.Series:
     """Return for each row the smallest error of all cheaper rows with its scheme and order.
 
-    It is infinite for the cheapest row.
+    The error is infinite for the cheapest row.
 
     rows : settings in the order of their cost
     """
