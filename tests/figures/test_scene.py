@@ -308,6 +308,20 @@ def test_every_run_is_drawn(scheme, gamma, peak, times, positions):
     assert sp.plot(sp.simulate(scene, samples))._repr_png_().startswith(b"\x89PNG")
 
 
+def test_samples_in_any_order_and_repeated_samples_give_the_same_map():
+    times, positions = np.linspace(0.0, 4.0, 9), np.linspace(-3.0, 3.0, 13)
+    maps = []
+    for given_times, given_positions in (
+        (times, positions),
+        (np.repeat(times, 2), np.append(positions[::-1], 0.0)),
+    ):
+        scene = sp.Scene("stress", sp.Prestress(-0.5, 0.3), 4.0, 0.1)
+        figure = sp.plot(sp.simulate(scene, sp.Samples(given_times, given_positions)))
+        (drawn_map,) = figure.axes[1].findobj(QuadMesh)
+        maps.append(drawn_map.get_array())
+    assert np.array_equal(*maps)
+
+
 def test_a_scene_shows_its_parameters():
     html = PLAIN._repr_html_()
     for name, value in PLAIN.attributes().items():

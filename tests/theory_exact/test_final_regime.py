@@ -153,6 +153,31 @@ def test_the_regime_is_undecided_if_a_barrier_may_stop_the_pulse():
         assert predictions([run], {"still": STILL_FRACTION}).squeeze() == expected
 
 
+@pytest.mark.parametrize(
+    ("left", "beyond", "expected"),
+    [(-0.1, 0.8, "crack-like, one front slow"), (-0.9, 0.03, "pulse, one-way, growing")],
+)
+def test_a_pulse_that_enters_a_high_level_becomes_a_crack(left, beyond, expected):
+    """Waves from the front in the high level set the nucleation point in motion again."""
+    exact = Rupture(
+        Prestress(left, 0.0, steps=((5.0, beyond),)), 0.0, DAMPING_RATIO, "total", 200.0
+    )
+    x = np.linspace(0.0, exact.fronts_at(200.0)[1], 301)
+    largest = np.max(exact.slip_velocity(x, 200.0))
+    is_crack = float(exact.slip_velocity(0.0, 200.0)) >= STILL_FRACTION * largest
+    assert is_crack == (expected == "crack-like, one front slow")
+    for sides in ((left, 0.0, 5.0), (0.0, left, -5.0)):
+        profile = Prestress(*sides[:2], steps=((sides[2], beyond),))
+        run = Run("stress", profile, 0.0, 1.0, DAMPING_RATIO, "total", {})
+        assert predictions([run], {"still": STILL_FRACTION}).squeeze() == expected
+
+
+def test_a_run_in_which_nothing_reaches_the_threshold_is_at_rest():
+    for profile in (Prestress(0.5, 0.5, peak=0.9), Prestress(0.5, 0.5, width=None)):
+        run = Run("stress", profile, 0.0, 1.0, DAMPING_RATIO, "total", {})
+        assert predictions([run], {"still": STILL_FRACTION}).squeeze() == "arrested"
+
+
 def test_every_answer_is_a_regime():
     levels = (-0.9, -0.02, 0.0, 0.02, 0.9)
     answers = {regime(*scene) for scene in product(levels, levels, (0.0, 0.65))}

@@ -177,13 +177,28 @@ def test_few_limits_are_removed_by_refinement():
     assert sum(check_variants(scene(number)) for number in range(ALL_SCENES)) <= 0.15 * ALL_SCENES
 
 
-def test_stick_times_that_are_only_rounding_are_refused():
-    """A pre-stress of almost 0 leaves slip velocities that are smaller than rounding errors."""
-    zero, low = -1e-13, -0.92
+def almost_no_prestress(zero: float) -> Prestress:
+    """Return a pre-stress with a part of about 0 on each side, and a low level beyond it."""
+    low = -0.92
     half = [(0.1, 0.4), (1.0, 0.4), (1.5, zero), (3.8, zero), (4.3, low)]
     points = [(-x, tau) for x, tau in reversed(half)] + [(0.0, 1.0), *half]
     points[0], points[2] = (-4.8, low), (-2.0, zero)
-    prestress = Prestress(low, low, width=None, points=tuple(points))
-    rupture = Rupture(prestress, 0.0, 0.1, "total", 25.0)
-    with pytest.raises(ValueError, match=r"prestress: the stick times need more than \d+ "):
+    return Prestress(low, low, width=None, points=tuple(points))
+
+
+@pytest.mark.slow
+def test_stick_times_that_are_only_rounding_are_refused():
+    rupture = Rupture(almost_no_prestress(0.0), 0.0, 0.1, "total", 25.0)
+    with pytest.raises(ValueError, match=r"prestress: .*need more than \d+ "):
         rupture.stick_time(1.0)
+
+
+def test_velocities_as_small_as_rounding_errors_do_not_stick_a_block():
+    prestress, x = almost_no_prestress(-1e-13), np.array([-3.0, 0.0, 1.0, 3.0])
+    one, fine = (
+        Rupture(prestress, 0.0, 0.1, "total", 25.0, refinement).stick_time(x)
+        for refinement in (1, 2)
+    )
+    assert fine == pytest.approx(one, rel=1e-6)
+    # Stick times on a lattice with the spacing 0.01.
+    assert one == pytest.approx([10.6383, 9.7423, 10.1772, 10.8598], rel=1e-2)

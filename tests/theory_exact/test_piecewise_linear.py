@@ -91,6 +91,23 @@ def test_a_tail_that_ends_stops_the_left_front_at_x_minus_in_finite_time(ratio, 
     assert rupture.release_time([-4.4, -1.0]) == pytest.approx(times, rel=1e-8)
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("level", "length", "tail"), [(-0.36, 0.942, 1.432), (-0.442, 0.721, 1.484), (-0.2, 1.43, 0.58)]
+)
+def test_rounding_does_not_decide_whether_blocks_stick_after_all_waves(level, length, tail, side):
+    """The velocity behind the stopped front is 0, and no block slides backwards."""
+    x, tau = np.array([-length - 0.2, -0.2, 0.2, tail + 0.2]), np.array([level, 1.0, 1.0, 0.0])
+    if side < 0.0:
+        x, tau = -x[::-1], tau[::-1]
+    for shift in (0.0, -17.0, 24.0):
+        rupture = Rupture(sp.Prestress.through(x + shift, tau), 0.0, 0.1, duration=20.0)
+        assert rupture.limit is None and rupture.first_stick is None
+        ends = [abs(end.x - shift) for end in rupture.front_ends[0]]
+        position = shift - 0.9 * side * min(ends)
+        assert float(rupture.slip_velocity(position, 20.0)) == pytest.approx(0.0, abs=1e-12)
+
+
 def test_x_minus_of_a_trapezoid_is_the_root_of_a_quadratic():
     """The area is 1.75 to the right of x = 0, and 0 on the ramp from -0.4 to 0.4."""
     x, tau = [-1.0, 0.0, 0.0, 1.0, 2.5, 3.0], [-0.4, 0.4, 1.0, 1.0, 0.0, 0.0]

@@ -140,6 +140,7 @@ RUPTURES = {
     "refinement: 0; allowed: a whole number and >= 1": {"refinement": 0},
 }
 SETTINGS = {
+    "prestress level: 1e-09; allowed: levels of 0, or": {"prestress": sp.Prestress(1e-9, 0.5)},
     "accuracy: 0.5; allowed: a finite number and >= 0.0001 and <= 0.1": {"accuracy": 0.5},
     "damping_ratio: 3.0; allowed: a finite number and >= 0 and <= 1": {"damping_ratio": 3.0},
     "boundary: 'free'; allowed: displacement, stress": {"boundary": "free"},
@@ -232,6 +233,7 @@ CALLS = [
     ("tau_barrier: -1e-05; allowed", theory.barrier_depth, 0.5, -1e-5, 0.65),
     ("tau_barrier: 0.5; allowed", theory.barrier_depth_estimate, 0.5, 0.5, 0.65),
     ("tau0: 0.0; allowed", theory.uniform_transition_time, 0.0, 0.65),
+    ("tau0: 1e-09; allowed: above about 1e-8", theory.paper_pulse, 1e-9, 0.65),
     ("weakening: 0.4, at tau0 = 0.5", theory.weakening_pulse, 0.5, 2 / 3, 0.05, 0.4),
     ("at most 20000 integration panels", theory.exact_transition_displacement, PLAIN, 1e-20, 0.1),
     ("prestress: changes its sign 3 times", theory.ArrestingCrack, SECOND_BARRIER, 0.1),

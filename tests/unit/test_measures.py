@@ -310,3 +310,99 @@ def test_a_run_from_a_sweep_has_the_numbers_of_its_row(shipped):
     assert list(table["transition_time"].isna()) == [True, False]
     uneven = Scene("displacement", Prestress(0.5, 0.3), 2.0, 0.1, 0.65)
     assert np.isnan(sp.measure(simulate(uneven))["transition_time"])
+
+
+def nucleated_at(centre: float, left: float, right: float) -> Prestress:
+    """Return a pre-stress with a level on each side of a bump that nucleates the rupture."""
+    x = np.array([-9.0, 0.0, 0.0, 9.0]) + centre
+    return Prestress.through(x, [left, left, right, right], bumps=((centre, 1.5, 0.6),))
+
+
+@pytest.mark.parametrize("scheme", ["localised", "continuum"])
+@pytest.mark.parametrize(
+    ("gamma", "levels"),
+    [(0.6, (0.4, 0.5)), (0.0, (0.5, 0.5)), (0.0, (-0.6, 0.0))],
+)
+def test_a_rupture_that_starts_elsewhere_has_the_same_numbers(scheme, gamma, levels):
+    """No front of the moved rupture reaches x = 0."""
+    boundary, shift = "displacement" if gamma else "stress", 24.0
+    rows = []
+    for centre in (0.0, shift):
+        profile = nucleated_at(centre, *levels)
+        scene = Scene(
+            boundary,
+            profile,
+            12.0,
+            0.02,
+            gamma,
+            half_lattice=False,
+            damping_ratio=0.1,
+            scheme=scheme,
+        )
+        positions = np.linspace(-18.0, 18.0, 181) + centre
+        rows.append(sp.measure(simulate(scene, Samples(np.linspace(0.0, 12.0, 25), positions))))
+    expected, moved = rows
+    has_transition = gamma > 0.0 or levels[1] == 0.0
+    assert np.isfinite(moved["transition_length"]) == has_transition
+    positions = {"first_stick_position", "pulse_front", "front_intercept_right"}
+    positions |= {name for name in expected if name.startswith("trailing_edge")}
+    for name in positions & expected.keys():
+        expected[name] += shift
+    expected["front_intercept_left"] -= shift
+    # Sums of rounding errors, and of the waves of the lattice.
+    rounded_numbers = {"energy_residual", "lattice_noise"}
+    for name in expected.keys() - {"steps_and_bumps"} - rounded_numbers:
+        value = expected[name]
+        is_text = isinstance(value, str)
+        allowed = value if is_text else pytest.approx(value, rel=1e-5, abs=1e-9, nan_ok=True)
+        assert moved[name] == allowed, name
+
+
+def test_a_front_that_dies_on_the_left_of_its_nucleation_is_flagged():
+    for centre in (0.0, 9.0):
+        profile = Prestress.through(np.array([-1.0, 0.0, 1.0]) + centre, [0.02, 1.0, 0.6])
+        scene = Scene("displacement", profile, 6.0, 0.1, gamma=5.0, damping_ratio=0.1)
+        assert simulate(scene).attrs["run_flags"] == "died_out"
+
+
+def test_a_plateau_of_pre_stress_has_one_width_from_either_side():
+    x, tau = np.array([-4.0, -1.0, 0.0, 1.5, 2.0]), np.array([-0.3, 0.5, 1.0, 1.0, -0.6])
+    scenes = [
+        Scene("stress", Prestress.through(points, values), 1.0, 0.1)
+        for points, values in ((x, tau), (-x[::-1], tau[::-1]))
+    ]
+    blocks = [simulate(scene).attrs["pulse_blocks"] for scene in scenes]
+    # The middle of the plateau is at 0.7 or 0.8, and the block at 1.9 is negative.
+    assert blocks[0] == blocks[1] == 11
+
+
+def test_blocks_that_stick_in_the_same_step_have_one_first_position():
+    positions = []
+    for left, right in ((0.2, 0.0), (0.0, 0.2)):
+        scene = Scene(
+            "displacement",
+            Prestress(left, right, 0.65),
+            6.0,
+            0.1,
+            gamma=0.6,
+            damping_ratio=0.1,
+            scheme="fixed_step",
+        )
+        positions.append(simulate(scene).attrs["first_stick_position"])
+    assert positions[0] == -positions[1]
+
+
+def test_a_level_that_is_almost_0_can_be_measured():
+    """The paper's front speed 1/sqrt(1 - tau^2) is rounded to 1 there."""
+    scene = Scene("displacement", Prestress(1e-12, 1e-12), 6.0, 0.1, gamma=1.0, damping_ratio=0.1)
+    numbers = sp.measure(simulate(scene))
+    assert np.isnan(numbers["pulse_shape_deviation"])
+    assert numbers["transition_time"] > 0.0
+
+
+@pytest.mark.parametrize(("times", "positions"), [([], [-1.0, 1.0]), ([1.0, 2.0], [])])
+def test_a_run_without_a_sampled_time_or_position_is_measured(times, positions):
+    scene = Scene("displacement", Prestress(0.5, 0.5), 6.0, 0.1, gamma=1.0)
+    expected = sp.measure(simulate(scene))
+    numbers = sp.measure(simulate(scene, Samples(times, positions)))
+    assert numbers == pytest.approx(expected, nan_ok=True)

@@ -36,3 +36,15 @@ def test_linear_rate_friction_changes_predicted_pulses_but_not_fronts():
     assert row["exact_front_speed_right"] == approx(speed)
     assert row["exact_pulse_slip"] == row["exact_left_pulse_slip"] == approx(pulse.slip)
     assert row[["exact_regime", "exact_transition_time", "exact_first_stick_time"]].isna().all()
+
+
+def test_the_balance_distance_begins_at_the_nucleation():
+    x, tau = [-3.0, -1.0, 0.0, 1.0], [-0.5, -0.5, 1.0, 0.0]
+    distances = []
+    for shift in (0.0, 6.0):
+        profile = Prestress.through([position + shift for position in x], tau)
+        run = Run("stress", profile, 0.0, 0.02, 0.002, "total", friction("coulomb").mapping())
+        distances.append(
+            predictions(TOPICS, [run], MEASURE_SETTINGS).loc[0, "exact_balance_distance"]
+        )
+    assert distances[1] == approx(distances[0])

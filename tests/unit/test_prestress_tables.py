@@ -325,6 +325,15 @@ def test_a_bump_can_nucleate_the_rupture_without_a_gaussian_and_without_a_table(
     assert balance == pytest.approx(-2.4 * np.sqrt(2.0 * np.pi), rel=tol.ALGEBRA)
 
 
+def test_a_gaussian_with_a_low_peak_does_not_nucleate_the_rupture():
+    lower = sp.Prestress(-0.3, 0.0, peak=0.6, bumps=((6.0, 1.2, 0.5),))
+    balance = sp.theory.prestress_balance_position(lower)
+    assert integral(lower, balance, 60.0) == pytest.approx(0.0, abs=tol.QUADRATURE)
+    # Only the bump nucleates. On its left, the pre-stress is balanced at a positive position.
+    barrier = dataclasses.replace(lower, bumps=((6.0, 1.2, 0.5), (3.5, -2.5, 0.5)))
+    assert 2.0 < sp.theory.prestress_balance_position(barrier) < 5.0
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_balance_of_random_bumps_is_that_of_a_running_sum(seed):
     rng = np.random.default_rng(seed)

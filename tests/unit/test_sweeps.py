@@ -49,6 +49,9 @@ def test_the_nearest_run_is_found_among_runs_without_the_parameter():
     scenes = [sp.Scene("stress", sp.Prestress(-0.3, 0.0, width), 0.5, 0.1) for width in (None, 2.0)]
     sweep = sp.run_sweep(scenes)
     assert sweep.sel(width=1.9, method="nearest")["width"].values.tolist() == [2.0]
+    for no_width in (None, float("nan")):
+        assert sweep.sel(width=no_width)["point"].values.tolist() == [0]
+    assert sweep.sel(width=[None, 2.0]).sizes["point"] == 2
     for options in ({"method": "pad"}, {"method": "nearest", "tolerance": 0.1}):
         with pytest.raises(ValueError, match="allowed: None"):
             sweep.sel(width=1.9, **options)

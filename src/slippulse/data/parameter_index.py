@@ -4,6 +4,7 @@ An index of xarray itself has one coordinate. If several of them lie along one d
 selection cannot combine them, and before xarray 2025 arithmetic was not possible.
 """
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, Self
 
@@ -139,6 +140,7 @@ class ParameterIndex(xr.Index):
 
         A label is one value, several values, or a slice, which includes both of its ends. Numbers
         match up to rounding, or, if ``nearest`` is True, the nearest number that occurs matches.
+        None and NaN match the runs without a value, such as those with ``width=None``.
         """
         values = self.values[name]
         if isinstance(label, slice):
@@ -153,6 +155,9 @@ class ParameterIndex(xr.Index):
         for value in np.atleast_1d(np.asarray(label)).tolist():
             if not has_numbers or isinstance(value, str):
                 matches |= values == value
+                continue
+            if value is None or math.isnan(value):
+                matches |= np.isnan(values)
                 continue
             if nearest:
                 # A run without this parameter has the value NaN, and is never the nearest.

@@ -17,6 +17,7 @@ from ..model.prestress import Prestress, prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import DEFAULTS_OF_EXTRA_TERMS, EXTRA_TERMS, gamma_without_extra_terms
 from .front_paths import fit_front, front_position, limit_time
+from .nucleation import position_of_nucleation
 from .pulses import LeadingPulse, acceleration_amplitude, comoving, leading_pulse, slip_variation
 from .regime import classify_regime
 from .transition import transition_displacement, transition_stress
@@ -97,7 +98,8 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
             "sliding_at_once": sliding_at_once(run),
         }
     # The regime, which needs samples.
-    if "sample_velocity" in run and run["sample_position"].size > 1:
+    has_samples = "sample_velocity" in run and np.size(run["sample_velocity"]) > 0
+    if has_samples and run["sample_position"].size > 1:
         row |= classify_regime(run, settings["still"], settings["steady_tolerance"])
         if run.attrs["boundary"] == "stress":
             # Changes of the pulse where the pre-stress is constant, far from the nucleation.
@@ -253,14 +255,17 @@ def sliding_at_once(run: AnyRun) -> float:
     return float(np.max(released_count - stuck_count))
 
 
-def _start_of_far_field(profile: Prestress, width: float) -> float:
+def _start_of_far_field(profile: Prestress, width: float, nucleation: float) -> float:
     """Return the position to the right of which there are no Gaussians, steps and points.
 
-    width : standard deviation of the Gaussian at x = 0
+    width : standard deviation of the Gaussian at x = 0 or, if there is none, a distance beyond
+        which the nucleation is far away
+    nucleation : position of the nucleation
     """
     ends = [centre + GAUSSIAN_END_IN_WIDTHS * bump_width for centre, _, bump_width in profile.bumps]
     ends += [position for position, _ in (*profile.steps, *profile.points)]
-    return max([GAUSSIAN_END_IN_WIDTHS * width, *ends])
+    centre = nucleation if profile.width is None else 0.0
+    return max([centre + GAUSSIAN_END_IN_WIDTHS * width, *ends])
 
 
 def far_field(run: AnyRun) -> dict[str, float]:
@@ -284,7 +289,8 @@ def far_field(run: AnyRun) -> dict[str, float]:
     profile = prestress_from(run.attrs)
     # If there is no Gaussian, its width is None. The unit of length takes its place.
     width = profile.width or 1.0
-    far_start = _start_of_far_field(profile, width)
+    nucleation = position_of_nucleation(run)
+    far_start = _start_of_far_field(profile, width, nucleation) - nucleation
     times = np.asarray(run["sample_time"])
     # Sampled positions may be in any order, and may repeat.
     x, order = np.unique(np.asarray(run["sample_position"]), return_index=True)

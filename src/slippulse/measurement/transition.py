@@ -13,6 +13,7 @@ from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
 from ..model.scene import gamma_without_extra_terms
 from .front_paths import arrival, front_path, front_position, is_known_to_end
+from .nucleation import position_of_nucleation
 
 # The lattice holds up the left front if the front waits between two blocks for more than this
 # fraction of T_trans. The relative error of T_trans is up to 1.5 times the fraction that the front
@@ -59,7 +60,7 @@ def slip_time(run: AnyRun, slip: float) -> float:
 
     NaN if it never does, or already at the first sample, or if the run has no samples.
     """
-    if "sample_slip" not in run:
+    if "sample_slip" not in run or np.size(run["sample_slip"]) == 0:
         return np.nan
     centre = int(np.argmin(np.abs(np.asarray(run["sample_position"]))))
     slips, times = np.asarray(run["sample_slip"])[:, centre], np.asarray(run["sample_time"])
@@ -85,7 +86,8 @@ def transition_stress(run: AnyRun, fraction: float) -> dict[str, float | str]:
     (time and length are NaN). transition_longest_wait is the longest time between two successive
     releases on the way there, as a fraction of the transition time.
     """
-    balance_distance = abs(prestress_balance_position(prestress_from(run.attrs)))
+    balance_position = prestress_balance_position(prestress_from(run.attrs))
+    balance_distance = abs(balance_position - position_of_nucleation(run))
     time, longest_wait = arrival(run, fraction * balance_distance, "left")
     wait_fraction = longest_wait / time
     state, right_distance = "not reached", np.nan

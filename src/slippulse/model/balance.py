@@ -199,13 +199,14 @@ def _nearest_balance(prestress: Prestress, distance: float) -> float:
 def _leftmost_nucleation(prestress: Prestress) -> float:
     """Return the leftmost position at which the rupture starts.
 
-    If there is a Gaussian at x = 0, the rupture starts there. Otherwise it starts at the points and
-    at the centres of bumps where the pre-stress reaches 1 or, if it reaches 1 nowhere, where it is
-    largest. If there are no points and no bumps, 0 is returned.
+    If a Gaussian at x = 0 has the peak 1 or more, the rupture starts there. Otherwise it starts at
+    the points and at the centres of bumps and of this Gaussian where the pre-stress reaches 1 or,
+    if it reaches 1 nowhere, where it is largest. Without points and bumps, 0 is returned.
     """
-    if prestress.width is not None or not (prestress.points or prestress.bumps):
+    has_gaussian_nucleation = prestress.width is not None and prestress.peak >= 1.0
+    if has_gaussian_nucleation or not (prestress.points or prestress.bumps):
         return 0.0
-    positions = np.array([centre for centre, _, _ in prestress.bumps])
+    positions = np.array([centre for centre, _ in prestress.gaussians])
     values = prestress(positions)
     if prestress.points:
         # At a jump the table has two values, so that the bumps are added to each of them.

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ..data.points import SAMPLE_AXES
 from ..model.layer_units import Layer, layer_of
 from ..model.scene import check_run_attributes
 from . import space_time
@@ -69,7 +70,7 @@ def plot(run: xr.Dataset) -> Picture:
         run = layer.from_si(run)
     check_run_attributes(run.attrs)
     with house_style():
-        return _draw(run, layer)
+        return _draw(_in_order(run), layer)
 
 
 def _check_drawable(run: object) -> None:
@@ -86,6 +87,15 @@ def _check_drawable(run: object) -> None:
         problem = f"without {', '.join(missing)}"
         allowed = "a run with these data; a sweep records them if record is ('fronts', 'fields')"
     raise TypeError(f"run: {problem}; allowed: {allowed}")
+
+
+def _in_order(run: xr.Dataset) -> xr.Dataset:
+    """Return a run with each sampled time and position once, in ascending order."""
+    for name in SAMPLE_AXES:
+        if name in run.dims:
+            _, indices = np.unique(run[name], return_index=True)
+            run = run.isel({name: indices})
+    return run
 
 
 def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:

@@ -15,17 +15,19 @@ import xarray as xr
 
 from ..data.points import AnyRun, runs_in
 from ..measurement.front_paths import front_path
+from ..measurement.nucleation import (
+    position_of_nucleation,
+    positions_from_zero,
+    seen_from_nucleation,
+)
 from ..measurement.pulses import LeadingPulse, comoving, slip_variation
 from ..measurement.table import measure_run
+from ..model.balance import prestress_balance_position
 from ..model.prestress import prestress_from
 from ..model.recorded_law import read_recorded_law
 from ..model.scene import used_extra_terms
-from ..theory.closed_pulse import (
-    paper_pulse,
-    paper_transition_displacement,
-    paper_transition_stress,
-    pulse_at_speed,
-)
+from ..theory.closed_pulse import paper_pulse, paper_transition_displacement, pulse_at_speed
+from .common import value_or
 
 # A pulse is unsteady if its width differs by more than this fraction from that of the steady pulse
 # at the measured speed, or if the slip behind it varies by more.
@@ -49,6 +51,7 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
 
     settings : the settings of `measure_run`, which the configuration has under ``measure``
     """
+    run = seen_from_nucleation(run)
     row, pulse = measure_run(run, settings)
     if pulse is not None:
         row["pulse_state"] = pulse_state(run, pulse)
@@ -56,7 +59,7 @@ def measured_row(run: AnyRun, settings: Mapping) -> dict[str, Any]:
     if "transition_time" in row:
         time, length = _paper_transition(run)
         row["paper_transition_time"], row["paper_transition_length"] = time, length
-    return row
+    return positions_from_zero(row, run)
 
 
 def _paper_transition(run: AnyRun) -> tuple[float, float]:
@@ -68,7 +71,10 @@ def _paper_transition(run: AnyRun) -> tuple[float, float]:
     if used_extra_terms(run.attrs):
         return math.nan, math.nan
     if run.attrs["boundary"] == "stress":
-        return paper_transition_stress(prestress_from(run.attrs))
+        # The fronts of the paper start at x = 0. Those of this run may start elsewhere.
+        balance_position = prestress_balance_position(prestress_from(run.attrs))
+        distance = abs(balance_position - position_of_nucleation(run))
+        return distance, 2.0 * distance
     left, right = run.attrs["left"], run.attrs["right"]
     time, length = paper_transition_displacement(left, run.attrs["gamma"])
     # The length depends on the level of pre-stress, but the time does not.
@@ -149,7 +155,11 @@ def shape_deviation(run: AnyRun, pulse: LeadingPulse, level_ahead: float | None 
     has_paper_pulse = run.attrs["boundary"] == "displacement" and not used_extra_terms(run.attrs)
     if not has_paper_pulse or not np.isfinite(pulse.width) or not 0.0 < tau < 1.0:
         return np.nan
-    paper = paper_pulse(tau, run.attrs["gamma"])
+    # At levels below about 1e-8, fronts are as fast as the waves, to rounding. Theory then has no
+    # pulse.
+    paper = value_or(lambda: paper_pulse(tau, run.attrs["gamma"]), None)
+    if paper is None:
+        return np.nan
     # Fields as functions of xi, the position relative to the measured front.
     fields = comoving(run, pulse)
     xi_of_peak = pulse.peak_distance - pulse.front

@@ -10,6 +10,7 @@ import xarray as xr
 
 from ..data.points import over_points, runs_in
 from ..data.sweep_views import is_sweep
+from ..measurement.nucleation import positions_from_zero, seen_from_nucleation
 from ..measurement.transition import first_stick
 from ..model.checks import check_that
 from ..model.layer_units import layer_of
@@ -73,6 +74,8 @@ def measure(run: xr.Dataset) -> Any:
     Source: sections III B and III C of the paper for the transition. Under a displacement boundary
     T_trans is the time of the first stick. Under a stress boundary it is the time at which the left
     front has covered 95 % of ``|x_minus|``. L_trans is the distance between both fronts at T_trans.
+    If the rupture starts at one place that is not x = 0, "left" and "right" are the sides of this
+    place, and ``|x_minus|`` is the distance from it.
 
     Examples
     --------
@@ -125,7 +128,8 @@ def _measure_in_model_units(run: xr.Dataset, **settings: Any) -> dict[str, Any]:
     if is_held and max(profile.left, profile.right) > 0.0 and profile.left != profile.right:
         # The paper defines no transition if the two levels differ. `measure` takes the first stick,
         # which is the transition at equal levels.
-        numbers |= first_stick(run)
+        moved_run = seen_from_nucleation(run)
+        numbers |= positions_from_zero(first_stick(moved_run), moved_run)
     has_several_nucleations = len(nucleation_intervals(profile)) > 1
     if has_several_nucleations:
         # The two outermost fronts then belong to different ruptures.

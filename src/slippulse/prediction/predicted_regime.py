@@ -3,10 +3,10 @@
 import numpy as np
 import pandas as pd
 
-from ..measurement.regime import UNDECIDED, pulse_regime
+from ..measurement.regime import UNDECIDED
 from ..model.run import Run
 from ..theory.front_speeds import front_speed
-from .common import far_level, rounded_damping_ratio
+from .common import rounded_damping_ratio
 
 # Friction laws for which the regime is valid.
 LAWS = ("coulomb",)
@@ -24,18 +24,26 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
-    Theory knows the final regime only for a constant level, or steps, on each side.
+    Theory knows the final regime only for a constant level, or some steps, on each side.
 
     still_fraction : a point is at rest below this fraction of the largest slip velocity
     """
     profile = run.prestress
     if profile.bumps or profile.points:
         return UNDECIDED
+    # Without bumps and points, a rupture can only start at x = 0.
+    if profile(0.0) < 1.0:
+        return "arrested"
+    levels: tuple[float, float] | None = (profile.left, profile.right)
     if profile.steps:
-        return _regime_with_steps(run)
+        levels = _levels_of_long_pulse(run)
+    if levels is None:
+        return UNDECIDED
+    # Beyond the steps, the velocity of a pulse falls with the integral of negative pre-stress.
+    if profile.steps and max(levels) < 0.0:
+        return "pulse, one-way, decaying"
     return final_regime(
-        profile.left,
-        profile.right,
+        *levels,
         gamma=run.gamma,
         damping_ratio=rounded_damping_ratio(run),
         release=run.release,
@@ -43,25 +51,27 @@ def _regime(run: Run, still_fraction: float) -> str:
     )
 
 
-def _regime_with_steps(run: Run) -> str:
-    """Return the final regime of a run whose pre-stress has steps; UNDECIDED in most cases.
+def _levels_of_long_pulse(run: Run) -> tuple[float, float] | None:
+    """Return the levels that decide the final regime of a run whose pre-stress has steps.
 
-    The regime is decided if a pulse runs to the right, towards the steps, and reaches the last one.
-    A pulse runs to the right under a stress boundary, with a negative level on the left and the
-    level 0 on the right. Before the last step, only a negative level could stop it.
+    They are the level behind a pulse that runs towards the steps, and the level beyond the last
+    step. The result is None if there is no such pulse, or if it may not reach the last step. Under
+    a stress boundary, a pulse runs away from a negative level, into the level 0. Before the last
+    step, only a negative level could stop it.
     """
     profile = run.prestress
-    has_pulse_levels = profile.left < 0.0 and profile.right == 0.0
-    runs_to_the_right = run.boundary == "stress" and has_pulse_levels
-    steps_are_ahead = all(position > 0.0 for position, _ in profile.steps)
-    levels_before_last_step = [level for _, level in sorted(profile.steps)[:-1]]
-    reaches_last_step = min(levels_before_last_step, default=0.0) >= 0.0
-    if not (runs_to_the_right and steps_are_ahead and reaches_last_step):
-        return UNDECIDED
-    # The velocity of the pulse grows by half the integral of the pre-stress that it crosses. So the
-    # pulse grows, decays or is steady if the level beyond the last step is positive, negative or 0.
-    level_beyond_steps = far_level(run, "right")
-    return pulse_regime("one-way", change=level_beyond_steps, tolerance=0.0)
+    level_behind = min(profile.left, profile.right)
+    is_one_way = level_behind < 0.0 and max(profile.left, profile.right) == 0.0
+    if run.boundary != "stress" or not is_one_way:
+        return None
+    # Direction of the pulse, and steps in the order in which it reaches them.
+    direction = 1.0 if profile.left < 0.0 else -1.0
+    steps = sorted((direction * position, level) for position, level in profile.steps)
+    first_position, _ = steps[0]
+    *levels_on_the_way, level_beyond = [level for _, level in steps]
+    if first_position < 0.0 or min(levels_on_the_way, default=0.0) < 0.0:
+        return None
+    return level_behind, level_beyond
 
 
 def final_regime(

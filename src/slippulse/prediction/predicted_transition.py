@@ -7,6 +7,7 @@ place when the left front has covered a given fraction of its way to the balance
 import math
 from functools import cache, partial
 
+import numpy as np
 import pandas as pd
 
 from ..model.balance import integral, prestress_balance_position
@@ -15,6 +16,7 @@ from ..model.roots import root_between
 from ..model.run import Run
 from ..theory.arrest import ArrestingCrack
 from ..theory.exact_transition import exact_transition_displacement
+from ..theory.prestress_pieces import nucleation_intervals
 from .common import far_level, rounded_damping_ratio, value_or, value_or_nan
 
 # Friction laws for which these numbers are valid.
@@ -77,7 +79,7 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
     if not (far_level(run, "left") < 0.0 and far_level(run, "right") == 0.0):
         return row
     balance_position = value_or_nan(partial(prestress_balance_position, run.prestress))
-    row["exact_balance_distance"] = -balance_position
+    row["exact_balance_distance"] = _nucleation_position(run.prestress) - balance_position
     # The other numbers also need a single Gaussian between these levels.
     width = _gaussian_width(run.prestress)
     if width:
@@ -87,6 +89,24 @@ def _row_under_stress(run: Run, fraction: float) -> dict[str, float]:
         # All lengths and times, and the velocity, are proportional to the width.
         row |= {name: value * width for name, value in for_unit_width.items()}
     return row
+
+
+def _nucleation_position(profile: Prestress) -> float:
+    """Return the position of the nucleation; 0 if it contains x = 0, or if there are several.
+
+    It is the position with the highest pre-stress, or the middle of such positions.
+    """
+    if profile(0.0) >= 1.0:
+        return 0.0
+    intervals = nucleation_intervals(profile)
+    if len(intervals) != 1:
+        return 0.0
+    ((left, right),) = intervals
+    candidates = [centre for centre, _ in profile.gaussians] + [x for x, _ in profile.points]
+    inside = np.array([x for x in candidates if left <= x <= right] or [left, right])
+    prestress = profile(inside)
+    highest = inside[prestress == prestress.max()]
+    return float(0.5 * (highest.min() + highest.max()))
 
 
 @cache

@@ -239,6 +239,8 @@ def _spacings_at_level(demand: Demand, level: float, nucleation_error_per_dx: fl
     nucleation_error_per_dx : error of T_trans and L_trans because of the nucleation, divided by dx
     """
     speed = cached_front_speed(level, demand.damping_ratio, demand.release)
+    allowed = "levels of 0, or at which fronts are faster than the waves in spite of rounding"
+    check_that(speed > 1.0, "prestress level", level, allowed)
     # In the limit dx -> 0, damping affects the pulse only through the front speed.
     width = pulse_at_speed(level, demand.gamma, 0.0, speed).width
     # The thickness of the boundary layer that damping makes at the front, in blocks:

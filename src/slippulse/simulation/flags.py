@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from ..measurement.nucleation import nucleation_position
 from ..model.friction import COULOMB
 from ..model.scene import Scene
 from ..model.stability import accurate_step
@@ -115,13 +116,14 @@ def first_stick_at_front(scene: Scene, solution: Solution) -> bool:
         return False
     if scene.damping_ratio >= MIN_DAMPING_RATIO_OF_FRONTS:
         return False
-    # Side of x = 0 on which the first block sticks: -1 for the left, 1 for the right.
-    side = math.copysign(1.0, position)
-    # Distance of the front on this side from x = 0, at the time of the first stick.
+    start = _nucleation_position(solution)
+    # Side on which the first block sticks: -1 for the left, 1 for the right.
+    side = math.copysign(1.0, position - start)
+    # Distance of the front on this side from the nucleation, at the time of the first stick.
     is_released = solution.release_time <= time
-    front_distance = np.max(side * solution.x, where=is_released, initial=0.0)
-    is_held_back = bool(profile(side * front_distance) < 0.0)
-    distance_to_front = front_distance - abs(position)
+    front_distance = np.max(side * (solution.x - start), where=is_released, initial=0.0)
+    is_held_back = bool(profile(start + side * front_distance) < 0.0)
+    distance_to_front = front_distance - abs(position - start)
     return is_held_back and distance_to_front <= MAX_BLOCKS_BEHIND_FRONT * scene.dx
 
 
@@ -190,9 +192,13 @@ def _nucleation_width(scene: Scene, solution: Solution) -> float:
     width = solution.x.size * dx if profile.width is None else profile.width
     # In a table of pre-stress, search for the negative block that is nearest to the highest one.
     if profile.points:
-        highest_block = np.argmax(solution.prestress)
+        # If several neighbouring blocks are highest, the distance is measured from their middle.
+        highest_block = int(np.argmax(solution.prestress))
+        is_highest = solution.prestress == solution.prestress[highest_block]
+        highest_count = np.argmin(np.append(is_highest[highest_block:], False))
+        middle = highest_block + 0.5 * (highest_count - 1)
         negative_blocks = np.flatnonzero(solution.prestress < 0.0)
-        distances = np.abs(negative_blocks - highest_block) * dx
+        distances = np.abs(negative_blocks - middle) * dx
         return float(np.min(distances, initial=width))
     if profile.width is None:
         return width
@@ -208,7 +214,7 @@ def _nucleation_width(scene: Scene, solution: Solution) -> float:
 def died_out(solution: Solution) -> bool:
     """Return True if a front stopped although the pre-stress ahead of it is positive.
 
-    A front has stopped if no block on its side of x = 0 slides at the end.
+    A front has stopped if no block on its side of the nucleation slides at the end.
     """
     is_released = np.isfinite(solution.release_time)
     is_sliding = is_released & ~np.isfinite(solution.stick_time)
@@ -224,10 +230,15 @@ def died_out(solution: Solution) -> bool:
 
 
 def _values_outwards(solution: Solution, values: np.ndarray, side: int) -> np.ndarray:
-    """Return the values of the blocks on one side, in order from x = 0 outwards.
+    """Return the values of the blocks on one side, in order from the nucleation outwards.
 
     side : 1 for the right side and -1 for the left one
     """
-    distances = side * solution.x[::side]
+    distances = side * (solution.x - _nucleation_position(solution))[::side]
     first = np.searchsorted(distances, 0.0)
     return values[::side][first:]
+
+
+def _nucleation_position(solution: Solution) -> float:
+    """Return the position at which the rupture starts; 0 if it starts at several places."""
+    return nucleation_position(solution.x, solution.prestress, solution.release_time)

@@ -139,6 +139,21 @@ def _overestimate_of_viscous_loss(
     return 0.75 * step * medium.beta * dissipation_divided_by_beta
 
 
+def _first_stuck_block(lattice: Lattice) -> int:
+    """Return the number of the block that stuck first, counted from 0 at x = 0.
+
+    Several blocks stick first at the same time if the scheme checks this only once in each step.
+    The one nearest to x = 0 is returned and, of two mirror images, the one on the right.
+    """
+    is_first = lattice.history.stick_time == lattice.tally.first_stick_time
+    blocks = np.flatnonzero(is_first) + lattice.first_block
+    if not blocks.size:
+        # The block that stuck first was released again, so that it has no stick time.
+        return int(lattice.tally.first_stuck_block) + lattice.first_block
+    distances = np.abs(blocks)
+    return int(np.max(blocks[distances == np.min(distances)]))
+
+
 def compute_numbers(lattice: Lattice, status: int) -> dict:
     """Return energies, counters and extremes of a simulation that has ended.
 
@@ -161,7 +176,7 @@ def compute_numbers(lattice: Lattice, status: int) -> dict:
     # A block slides backwards at the stress -(1 + 2 r) if r is the friction ratio,
     # mu_k/(mu_s - mu_k). At this ratio, the block of the lowest stress would just do so.
     friction_ratio_needed = max(0.0, -(lowest_stress + 1.0) / 2.0)
-    first_stuck_position = (totals["first_stuck_block"] + lattice.first_block) * dx
+    first_stuck_position = _first_stuck_block(lattice) * dx
     return compute_energies(lattice, totals) | {
         "end_time": totals["time"],
         "stopped_because": "everything is stuck" if status == ALL_STUCK else "duration reached",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..model.balance import prestress_balance_position
-from ..model.checks import as_numbers, check_number
+from ..model.checks import as_numbers, check_number, check_that
 from ..model.prestress import Prestress
 from .domains import check_domains
 
@@ -214,7 +214,10 @@ def paper_pulse(tau0: float, gamma: float) -> SteadyPulse:
     2.0
     """
     check_domains(tau0=tau0)
-    return pulse_at_speed(tau0, gamma=gamma, beta=0.0, speed=1.0 / math.sqrt(1.0 - tau0 * tau0))
+    speed = 1.0 / math.sqrt(1.0 - tau0 * tau0)
+    allowed = "above about 1e-8, so that the front is faster than the waves in spite of rounding"
+    check_that(speed > 1.0, "tau0", tau0, allowed)
+    return pulse_at_speed(tau0, gamma=gamma, beta=0.0, speed=speed)
 
 
 def paper_transition_displacement(tau0: float, gamma: float) -> tuple[float, float]:

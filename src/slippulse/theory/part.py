@@ -12,7 +12,7 @@ import numpy as np
 
 from .curve import Curve
 from .riemann import DependenceDomains, StaticSolution, kernel_rate
-from .stick_search import StickSearch
+from .stick_search import QUIET_VELOCITY, StickSearch
 
 # Time step of the search for sticks, in units of `Part.scale`.
 SEARCH_STEP = 0.2
@@ -87,5 +87,9 @@ class Part:
         marks = np.array(self.marks)
         arrivals = self.curve.arrival(marks) + np.abs(x[:, None] - marks)
         step = SEARCH_STEP * self.scale / self.refinement
-        search = StickSearch(self.velocity, step, self.until if until is None else until)
+        end = self.until if until is None else until
+        # Without leaf springs, blocks can come to rest because all waves have passed. Their du/dt
+        # then stays 0, and rounding errors must not decide whether they stick.
+        rounding_error = QUIET_VELOCITY if self.gamma == 0.0 else 0.0
+        search = StickSearch(self.velocity, step, end, rounding_error)
         return search.find_stick_times(x, self.curve.arrival(x), arrivals)

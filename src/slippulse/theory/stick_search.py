@@ -53,12 +53,14 @@ class StickSearch:
     """A search for stick times at equal time steps, up to the final time ``until``.
 
     velocity(x, time) returns du/dt at points. Between two arrivals of waves du/dt is smooth, and
-    the step is so short that du/dt changes little during it.
+    the step is so short that du/dt changes little during it. A block sticks when du/dt falls below
+    0, by more than ``rounding_error``.
     """
 
     velocity: Callable[[np.ndarray, np.ndarray], np.ndarray]
     step: float
     until: float
+    rounding_error: float = 0.0
 
     def find_stick_times(
         self, x: np.ndarray, release: np.ndarray, wave_arrivals: np.ndarray
@@ -86,7 +88,7 @@ class StickSearch:
             samples = VelocitySamples(x[sliding], time, velocity)
             # The column of the first sample at or below 0, or the number of columns if there is no
             # such sample. The two kept samples, in columns 0 and 1, are not searched.
-            is_stuck = batch.velocity <= 0.0
+            is_stuck = batch.velocity <= -self.rounding_error
             has_stuck = is_stuck.any(axis=1)
             stuck_column = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
             # A zero in a dip between earlier samples comes first. Otherwise the zero is in the step
@@ -159,7 +161,7 @@ class StickSearch:
             fine = self._sample(samples.x[row], np.linspace(start, end, FINE_PARTS + 1, axis=1))
             # The column of the first fine sample at or below 0. Column 0 means that there is none,
             # since the first fine sample is positive.
-            first_below = np.argmax(fine.velocity <= 0.0, axis=1)
+            first_below = np.argmax(fine.velocity <= -self.rounding_error, axis=1)
             with_zero = np.flatnonzero(first_below)
             zeros = self._zeros_in_steps(fine, with_zero, first_below[with_zero])
             first_zeros[row[with_zero]] = np.fmin(first_zeros[row[with_zero]], zeros)
