@@ -292,8 +292,8 @@ def replicate(make_options: Mapping[str, str]) -> int:
     code = run.wait()
     lock.close()
     # If the run has failed, a target that does not exist may be the reason.
-    unknown = [target for target in targets if code and is_unknown(target)]
-    if unknown:
+    unknown = [target for target in targets if is_unknown(target)]
+    if code != 0 and unknown:
         names = ", ".join(unknown)
         print(f"TARGET: {names}, no rule of this project; {ALLOWED_TARGETS}", file=sys.stderr)
     if code == 0:

@@ -151,8 +151,8 @@ def test_a_claim_that_fails_at_some_choices_depends_on_the_one_that_moves_it_mos
     start = "1 runs. The claim holds at 2 of 4 combinations of open choices, with deviations up to"
     rest = "The claim fails at the other combinations, with deviations of 20 % or more."
     assert claim["why"].startswith(f"{start} 16 %. {rest}")
-    sides = ("holds at 0 (off by 13.6 %)", "fails at 0.058 (off by 20.4 %)")
-    sides += ("holds at *elastic* (off by 15.6 %)", "fails at *total* (off by 23.5 %)")
+    sides = ("holds for 0 (off by 13.6 %)", "fails for 0.058 (off by 20.4 %)")
+    sides += ("holds for *elastic* (off by 15.6 %)", "fails for *total* (off by 23.5 %)")
     assert all(side in claim["why"] for side in sides)
     flips = [("not reproduced", DEPENDS), (DEPENDS, "reproduced")]
     assert [(flip["below"], flip["above"]) for flip in claim["flips_at"]] == flips

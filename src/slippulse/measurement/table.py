@@ -110,6 +110,8 @@ def measure_run(run: AnyRun, settings: Mapping) -> tuple[dict, LeadingPulse | No
 def profile_columns(run: AnyRun, window: float) -> dict[str, float | str]:
     """Return the columns of a run that describe its pre-stress, in addition to PARAMETERS.
 
+    The columns are:
+
     beyond : level into which the right front runs: that of the outermost step on the right, or the
         right level if there is none
     profile, seed : labels of the profile, if the run has them
@@ -273,6 +275,8 @@ def far_field(run: AnyRun) -> dict[str, float]:
 
     The early time is the sampled time at two thirds of the run. Only the far field is used, which
     lies to the right of all Gaussians, steps and points, so that the pre-stress is constant.
+
+    The result contains these numbers:
 
     profile_change : largest change of slip velocity in the frame that moves at the wave speed,
         divided by the early peak velocity

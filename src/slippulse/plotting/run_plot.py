@@ -129,6 +129,8 @@ def _draw(run: xr.Dataset, layer: Layer | None) -> Picture:
 def _drawn_table(run: xr.Dataset) -> pd.DataFrame:
     """Return everything that the panels show, with a role in each row.
 
+    The roles are:
+
     prestress : pre-stress as a function of position
     front, trailing : times of first release and of last stick as functions of position
     map, largest : sampled slip velocity and its maximum, if anything slides in the samples

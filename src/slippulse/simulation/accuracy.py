@@ -326,7 +326,8 @@ def _spacings_without_springs(demand: Demand, prestress: Prestress) -> list[floa
         spacings.append(error * demand.peak_width / FREE_SPEED_ERROR)
     # T_trans and slip velocity tend to a limit only if the left front stops in negative pre-stress
     # and the pulse runs into pre-stress 0.
-    if prestress.left < 0.0 and prestress.right == 0.0 and distances:
+    stops_on_left = prestress.left < 0.0 and len(distances) > 0
+    if stops_on_left and prestress.right == 0.0:
         # The errors of T_trans and of slip velocity are these constants times dx/distance. The
         # first distance is the one on the left or, in a table, the shortest one. In a pre-stress
         # with steps, T_trans is not measured.

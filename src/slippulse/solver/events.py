@@ -164,7 +164,8 @@ def spread_difference(difference, medium, motion, event, left, right, top):
 
     The change of the block of the event itself, ``difference.block_change``, spreads to its
     neighbours by the equation of motion. ``difference.derivatives`` receives the time derivatives
-    of the change of slip, at the time of the event.
+    of the change of slip, at the time of the event. At a stick, the block itself gets 0 there,
+    because `hold_block` has already stopped it.
 
     left, right : numbers of adjacent sliding blocks on each side, which limit the reach
     top : order of the highest time derivative
@@ -187,15 +188,16 @@ def spread_difference(difference, medium, motion, event, left, right, top):
         if medium.alpha != 0.0:
             subtract_rate_strengthening(rows, k, first, last, medium.alpha)
         add_weakening(rows, k, first, last, block_of_column_0, motion, medium.law_kink)
-        # A block that stuck is held, so block_change is its whole change. A block that slides also
-        # feels the changes of its neighbours, computed above.
         if event.is_stick:
+            # The block is held, so the changes of its neighbours, computed above, do not move it.
+            # Its own change is needed in the loop, because it spreads to the neighbours.
             rows[k, CENTRE_COLUMN] = block_change[k]
         else:
+            # The block slides, and also feels the changes of its neighbours.
             rows[k, CENTRE_COLUMN] += block_change[k]
     if event.is_stick:
-        # The lattice already has the new motion of the block that stuck, because `hold_block` has
-        # set it to 0. Only the changes of the other blocks are still to be added.
+        # The change has spread. It is removed from the block itself, so that it is not added to the
+        # motion of the block once more.
         for k in range(2, top + 1):
             rows[k, CENTRE_COLUMN] = 0.0
 

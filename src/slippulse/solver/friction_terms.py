@@ -96,9 +96,12 @@ def friction_at_stick(motion, law_kink, block):
     """Return the friction of a block at the instant at which it sticks.
 
     At slip rate 0, friction is 0 by every law that does not depend on slip.
+
+    block : a block that `hold_block` has stopped, so that ``motion.event_slip`` already contains
+        its slip in this step until now
     """
     if law_kink is not None and law_kink.argument_row == SLIP:
-        # The slip at the start of the step, plus the slip by events of the step.
+        # The slip at the start of the step, plus the slip in the step until the stick.
         slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
         return friction_of_block(motion, law_kink, block, slip)
     return 0.0

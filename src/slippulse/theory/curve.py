@@ -42,8 +42,10 @@ NODES_TO_INTEGRAL_SERIES = legendre.legint(NODES_TO_SERIES, lbnd=-1.0)
 # These matrices give this integral, and the derivative by s, at the nodes.
 NODES_TO_INTEGRALS = legendre.legvander(NODES, NODE_COUNT) @ NODES_TO_INTEGRAL_SERIES
 NODES_TO_DERIVATIVES = legendre.legvander(NODES, NODE_COUNT - 2) @ legendre.legder(NODES_TO_SERIES)
-# This matrix gives the values of the function at both ends of the panel.
-NODES_TO_ENDS = legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
+# These rows give the value of the function at s = -1, and at s = 1.
+NODES_TO_START, NODES_TO_END = (
+    legendre.legvander(np.array([-1.0, 1.0]), NODE_COUNT - 1) @ NODES_TO_SERIES
+)
 # A curve of at most MAX_EAGER_PANELS panels computes the polynomials of all its panels at once. A
 # longer curve computes only the requested polynomials, because a slow front needs only a few at
 # each of its steps. If more than MAX_SEPARATE_POLYNOMIALS are requested at once, it computes all.
@@ -475,21 +477,24 @@ def _panels_of_crossings(
 def value_and_slope(coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Return the values of polynomials (row 0) and their derivatives (row 1) at parameters s.
 
-    There is one parameter for each polynomial. coefficients come from `with_slopes`, with the axes
-    [group of four powers, row of the group, polynomial]. For speed, each polynomial is split into
-    four polynomials q of the fourth power of s (Estrin's scheme):
+    There is one parameter for each polynomial. For speed, each polynomial p and its derivative are
+    split into four polynomials q of the fourth power of s (Estrin's scheme):
 
         p(s) = q_0(s^4) + s q_1(s^4) + s^2 q_2(s^4) + s^3 q_3(s^4).
+
+    coefficients come from `with_slopes`, with the axes [group, row, polynomial]. Each group belongs
+    to one power of s^4, and has eight rows: the coefficients of q_0 to q_3, each first for the
+    polynomial and then for its derivative.
     """
     square = s * s
     fourth = square * square
-    # Horner's rule in s^4. q has eight rows: two for each of q_0 to q_3, of which the first one
-    # belongs to the value, and the second one to the derivative.
+    # Horner's rule in s^4, for all eight rows at once.
     q = coefficients[-1] * fourth
     for group in coefficients[-2:0:-1]:
         q += group
         q *= fourth
     q += coefficients[0]
-    # The first two rows are q_0 + s^2 q_2, and the last two are q_1 + s^2 q_3.
-    halves = q[:4] + square * q[4:]
-    return halves[:2] + s * halves[2:]
+    # The first four rows are q_0 and q_1 (value and derivative of each), the others q_2 and q_3. So
+    # the sums are q_0 + s^2 q_2 in the first two rows, and q_1 + s^2 q_3 in the last two.
+    sums = q[:4] + square * q[4:]
+    return sums[:2] + s * sums[2:]

@@ -116,8 +116,9 @@ def _speed_if_prestress_nearly_one(tau0: float, front_law: FrontLaw) -> float | 
     if not (has_weak_springs and has_weak_drag):
         return None
     # The relative decrease of the speed is gamma dx^2/v^2 times (b v/6 + 1/24)/(b v + 1), where
-    # b = beta/dx. This is 1/24 without damping. Its limit 1/6 for large b v under rule "total" was
-    # found by quadrature. Under rule "elastic" damping has no influence next to tau_0 = 1.
+    # b = beta/dx. Without damping this factor is 1/24, as the closed form gives. Under rule "total"
+    # it agrees with the quadrature farther from tau_0 = 1, at small and at large b v. Under rule
+    # "elastic" damping has no influence next to tau_0 = 1, and b v is set to 0.
     b_v = damping_ratio * speed if release == "total" else 0.0
     coefficient = b_v / 6.0 + 1.0 / 24.0
     relative_decrease = gamma_dx2 / speed**2 * coefficient / (b_v + 1.0)

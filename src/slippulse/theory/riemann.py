@@ -199,6 +199,10 @@ class DependenceDomains:
         self.stiffness = gamma - 0.25 * alpha**2
         self.xi, self.eta = time - y, time + y
         self.left, self.right = curve.crossings(y, self.xi, self.eta)
+        # A point on the curve at the end of a panel has an empty domain. Its left end is found on
+        # the next panel. The integrals then use only the panel of the right end.
+        self.is_empty = self.left.panel > self.right.panel
+        self.first_panel = np.minimum(self.left.panel, self.right.panel)
 
     def slip_velocity(self) -> np.ndarray:
         """Return du/dt at the points."""
@@ -209,15 +213,15 @@ class DependenceDomains:
     def velocity_slopes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the derivatives of du/dt by xi = t - y and by eta = t + y.
 
-        The formula 2 du/dt = Int tau E K dx, where the integral is over the front from x_l to x_r
+        The formula du/dt = 1/2 Int tau E K dx, where the integral is over the front from x_l to x_r
         and the argument of the kernel K is k (xi - g) (eta - h), has the derivatives
 
-            by xi:   k Int tau E K' (eta - h) dx - (E tau dx/dg at x_l) - alpha/2 du/dt,
-            by eta:  k Int tau E K' (xi - g) dx  + (E tau dx/dh at x_r) - alpha/2 du/dt.
+            by xi:   1/2 [k Int tau E K' (eta - h) dx - (E tau dx/dg at x_l)] - alpha/4 du/dt,
+            by eta:  1/2 [k Int tau E K' (xi - g) dx  + (E tau dx/dh at x_r)] - alpha/4 du/dt.
 
-        The second terms arise because x_l (where g = xi) and x_r (where h = eta) move. K is 1
-        at both ends, because its argument is 0 there. The last terms arise from the decay factor
-        E = exp(-alpha/4 [(xi - g) + (eta - h)]).
+        K' is the derivative of K by its argument. The terms at the ends arise because x_l (where
+        g = xi) and x_r (where h = eta) move. K is 1 at both ends, because its argument is 0 there.
+        The last terms arise from the decay factor E = exp(-alpha/4 [(xi - g) + (eta - h)]).
         """
         decay_left, decay_right = self._decay_at_ends()
         # E tau dx/dg at x_l, and E tau dx/dh at x_r.
@@ -232,9 +236,9 @@ class DependenceDomains:
         def kernel_terms(nodes: PanelNodes) -> np.ndarray:
             """Return tau K' (eta - h) and tau K' (xi - g), each times dx/ds, at nodes of the curve.
 
-            K' is the derivative of the kernel. The source is tau dx/ds. `_integrate` multiplies the
-            result by E.
+            The source is tau dx/ds. `_integrate` multiplies the result by E.
             """
+            # The kernel of order 1 is K'.
             source_times_slope = nodes.kernel(1) * source[nodes.panels].ravel()
             return np.stack(
                 [source_times_slope * nodes.eta_minus_h, source_times_slope * nodes.xi_minus_g]
@@ -391,16 +395,16 @@ class DependenceDomains:
         """
         # Without stiffness and drag the kernel and E are 1, and long curves have a faster way.
         if self.stiffness == self.alpha == 0.0 and len(self.curve.panels) > MAX_EAGER_PANELS:
-            return self._integrate_without_kernel(integrand)
-        integrals = np.empty((*component_shape, self.xi.size))
-        # Points whose integrals cover similar panels are computed together.
-        order = np.lexsort((self.right.panel, self.left.panel))
-        for start in range(0, order.size, POINTS_PER_CHUNK):
-            points = order[start : start + POINTS_PER_CHUNK]
-            integrals[..., points] = self._integrate_chunk(points, integrand, component_shape)
-        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
-        # next panel.
-        return np.where(self.left.panel > self.right.panel, 0.0, integrals)
+            integrals = self._integrate_without_kernel(integrand)
+        else:
+            integrals = np.empty((*component_shape, self.xi.size))
+            # Points whose integrals cover similar panels are computed together.
+            order = np.lexsort((self.right.panel, self.left.panel))
+            for start in range(0, order.size, POINTS_PER_CHUNK):
+                points = order[start : start + POINTS_PER_CHUNK]
+                integrals[..., points] = self._integrate_chunk(points, integrand, component_shape)
+        integrals[..., self.is_empty] = 0.0
+        return integrals
 
     def _integrate_chunk(
         self,
@@ -415,10 +419,7 @@ class DependenceDomains:
         integrand, and (2,) for two.
         """
         curve = self.curve
-        last_panel = self.right.panel[points]
-        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
-        # next panel.
-        first_panel = np.minimum(self.left.panel[points], last_panel)
+        first_panel, last_panel = self.first_panel[points], self.right.panel[points]
         start, stop = int(first_panel.min()), int(last_panel.max()) + 1
         needed_panels = slice(start, stop)
         # From here on, panels are counted from `start`.
@@ -465,12 +466,8 @@ class DependenceDomains:
             on_panel = np.add.reduce(partial_weights(s) * values_by_panel[panel], axis=-1)
             return before_panel[panel] + on_panel
 
-        # A point on the curve at the end of a panel has an empty domain, whose left end is on the
-        # next panel.
-        first_panel = np.minimum(self.left.panel, self.right.panel)
         up_to_right_end = integral_up_to(self.right.panel, self.right.s)
-        integrals = up_to_right_end - integral_up_to(first_panel, self.left.s)
-        return np.where(self.left.panel > self.right.panel, 0.0, integrals)
+        return up_to_right_end - integral_up_to(self.first_panel, self.left.s)
 
 
 def _integrate_between(
@@ -594,7 +591,9 @@ def _bessel(z: np.ndarray, order: int) -> np.ndarray:
     if order == 1:
         return slope
     # The second derivative follows from Bessel's equation, z f'' + f' + f/4 = 0. Near z = 0, where
-    # the terms of this equation cancel, the Taylor series is used.
+    # the terms of this equation cancel, the Taylor series is used. The divisor 1 there only avoids
+    # a division by 0.
     is_small = np.abs(z) < 0.1
     series = (1.0 - z / 12.0 * (1.0 - z / 32.0 * (1.0 - z / 60.0 * (1.0 - z / 96.0)))) / 32.0
-    return np.where(is_small, series, -(slope + 0.25 * value) / np.where(is_small, 1.0, z))
+    divisor = np.where(is_small, 1.0, z)
+    return np.where(is_small, series, -(slope + 0.25 * value) / divisor)

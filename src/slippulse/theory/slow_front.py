@@ -48,9 +48,10 @@ from .curve import (
     NODE_COUNT,
     NODES,
     NODES_TO_DERIVATIVES,
-    NODES_TO_ENDS,
+    NODES_TO_END,
     NODES_TO_INTEGRALS,
     NODES_TO_SERIES,
+    NODES_TO_START,
     WEIGHTS,
     Curve,
     Panel,
@@ -179,6 +180,11 @@ class Chunk(NamedTuple):
     panel: int
     start: float
     stop: float
+
+    @property
+    def length(self) -> float:
+        """Length of the chunk in the parameter of the panel, which falls from start to stop."""
+        return self.start - self.stop
 
     def parameters(self, s: np.ndarray = NODES) -> np.ndarray:
         """Return the parameters on the panel that belong to parameters s of the chunk."""
@@ -426,7 +432,7 @@ class SlowFront:
         chunk, move_count = Chunk(entry.panel, entry.s, last_s), 0
         is_far_from_mark = mark - self.x0 >= MARK_DISTANCE * self.size
         for _ in range(MAX_CHUNKS):
-            if chunk.start - chunk.stop < MIN_CHUNK:
+            if chunk.length < MIN_CHUNK:
                 # The front can go on only if it is very close to the mark.
                 return self.straight_to_mark(mark)
             x = self.solve(chunk)
@@ -458,15 +464,16 @@ class SlowFront:
         front stops, or it reaches the mark. The name of the event is "none" if there is none.
         """
         reaches_mark = event.name == "mark"
-        x_end = mark if reaches_mark else float(NODES_TO_ENDS[1] @ x)
+        # The position of the front that belongs to the last entry of the chunk.
+        x_end = mark if reaches_mark else float(NODES_TO_END @ x)
         # A front that stops at the end of the chunk may go on later, so this is no end reason.
         end_reason = "mark" if reaches_mark else None
         panel = self.panel_of_chunk(chunk, x, x_end)
-        next_length = PANEL_LENGTH
-        # A chunk that stops before the left end of its panel of entries (s = -1), but not at an
-        # event, was too long at first.
-        if event.name == "none" and chunk.stop != -1.0:
-            next_length = MAX_CHUNK_GROWTH * (chunk.start - chunk.stop)
+        # A chunk goes from right to left. Without an event it goes up to the left end of its panel
+        # of entries, s = -1, unless it was shortened because a longer one cannot be resolved. Then
+        # the next chunk must not be much longer.
+        was_shortened = event.name == "none" and chunk.stop != -1.0
+        next_length = MAX_CHUNK_GROWTH * chunk.length if was_shortened else PANEL_LENGTH
         last_entry_x = self.position(Entry(chunk.panel, chunk.stop))
         return Advance(panel, end_reason, Progress(next_length, last_entry_x))
 
@@ -720,7 +727,7 @@ class SlowFront:
         # start of the computed positions. If it is larger than rounding errors, the integral of tau
         # over the gap is added to the panel, evenly over its parameter range of length 2. Otherwise
         # all later panels would have a gap too, and a larger one where tau is nearer to 0.
-        gap = float(NODES_TO_ENDS[0] @ x) - self.x0
+        gap = float(NODES_TO_START @ x) - self.x0
         if abs(gap) > ROUNDING_MOTION * self.size:
             source += 0.5 * gap * self.tau(np.array(self.x0))
         return Panel(

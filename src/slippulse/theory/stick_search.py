@@ -86,13 +86,13 @@ class StickSearch:
             time = np.append(kept_times[sliding], batch.time, axis=1)
             velocity = np.append(kept_velocities[sliding], batch.velocity, axis=1)
             samples = VelocitySamples(x[sliding], time, velocity)
-            # The column of the first sample at or below 0, or the number of columns if there is no
-            # such sample. The two kept samples, in columns 0 and 1, are not searched.
+            # The column of the first sample that shows a stick, or the number of columns if none
+            # does. The two kept samples, in columns 0 and 1, are not searched.
             is_stuck = batch.velocity <= -self.rounding_error
             has_stuck = is_stuck.any(axis=1)
             stuck_column = np.where(has_stuck, 2 + np.argmax(is_stuck, axis=1), time.shape[1])
             # A zero in a dip between earlier samples comes first. Otherwise the zero is in the step
-            # that ends at the first sample at or below 0.
+            # that ends at the first sample that shows a stick.
             zeros = self._zeros_next_to_minima(samples, stuck_column)
             rows = np.flatnonzero(has_stuck & ~np.isfinite(zeros))
             zeros[rows] = self._zeros_in_steps(samples, rows, stuck_column[rows])
@@ -142,7 +142,7 @@ class StickSearch:
         A sample is a minimum if it is lower than the sample before it, and not higher than the one
         after it. Around each minimum du/dt is sampled again with finer steps. If all fine samples
         are positive, this is repeated around the lowest of them. stuck_column has the column of the
-        first sample at or below 0 in each row; later minima are ignored.
+        first sample that shows a stick in each row; later minima are ignored.
         """
         first_zeros = np.full(samples.x.shape, np.nan)
         change = np.diff(samples.velocity, axis=1)
@@ -159,7 +159,7 @@ class StickSearch:
             return first_zeros
         for _ in range(2):
             fine = self._sample(samples.x[row], np.linspace(start, end, FINE_PARTS + 1, axis=1))
-            # The column of the first fine sample at or below 0. Column 0 means that there is none,
+            # The column of the first fine sample that shows a stick. Column 0 means that none does,
             # since the first fine sample is positive.
             first_below = np.argmax(fine.velocity <= -self.rounding_error, axis=1)
             with_zero = np.flatnonzero(first_below)
@@ -195,8 +195,8 @@ class StickSearch:
         target[quiet] = QUIET_VELOCITY
         start[quiet], end[quiet] = shortened.time.T
         at_start[quiet], at_end[quiet] = shortened.velocity.T - QUIET_VELOCITY
-        # If du/dt never rises above 0, the shortened step ends next to the start of the step. This
-        # end is then returned.
+        # If du/dt never rises above 0, the shortened step starts and ends at a time next to the
+        # start of the step. This time is then returned.
         zeros, has_zero = end.copy(), np.flatnonzero(at_start > 0.0)
 
         def above_target(time: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -219,16 +219,19 @@ class StickSearch:
 
         In the given steps du/dt is 0 at the start, and not positive at the end. In between it may
         rise, but next to a point where a slow front stops it does so only briefly. So it is sampled
-        at times that become ever denser towards the start. If it does not rise, the first sample is
-        at the end of the step, and the second one next to its start.
+        at times that become ever denser towards the start. If it does not rise, both samples are
+        the one next to the start.
         """
         duration = end - start
         fine = self._sample(x, start[:, None] + duration[:, None] * STEP_FRACTIONS)
-        # The columns go back in time: column 0 is the end of the step, and column -1 is next to its
-        # start. The shorter step starts at the latest sample above QUIET_VELOCITY; this is column 0
-        # if no sample is above. The shorter step ends at the sample after that, in the column
-        # before.
-        start_column = np.argmax(fine.velocity > QUIET_VELOCITY, axis=1)
-        columns = np.stack([start_column, start_column - 1], axis=1)
+        # The columns go back in time: column 0 is the end of the step, and the last column is next
+        # to its start. The shorter step starts at the latest sample above QUIET_VELOCITY, and ends
+        # at the sample after that, in the column before.
+        is_above = fine.velocity > QUIET_VELOCITY
+        rises, latest_above = is_above.any(axis=1), np.argmax(is_above, axis=1)
+        last_column = STEP_FRACTIONS.size - 1
+        start_column = np.where(rises, latest_above, last_column)
+        end_column = np.where(rises, latest_above - 1, last_column)
+        columns = np.stack([start_column, end_column], axis=1)
         rows = np.arange(x.size)[:, None]
         return VelocitySamples(x, fine.time[rows, columns], fine.velocity[rows, columns])

@@ -96,11 +96,13 @@ def increasing_roots(
         # The point becomes the end of the bracket on its side of the root.
         high[unsolved] = np.where(value > 0.0, np.minimum(high[unsolved], x_now), high[unsolved])
         low[unsolved] = np.where(value < 0.0, np.maximum(low[unsolved], x_now), low[unsolved])
-        # The zero of the secant; no step is made if the last two values are equal.
+        # The zero of the secant. No step is made if the last two values are equal: the quotient
+        # with the divisor 1 is then not used.
         change = value - value_before[unsolved]
         is_flat = change == 0.0
+        divisor = np.where(is_flat, 1.0, change)
         last_step = x_now - x_before[unsolved]
-        step = np.where(is_flat, 0.0, -value * last_step / np.where(is_flat, 1.0, change))
+        step = np.where(is_flat, 0.0, -value * last_step / divisor)
         x_next = x_now + step
         is_outside = (x_next <= low[unsolved]) | (x_next >= high[unsolved])
         # The error of a secant step is about the product of the last two steps.

@@ -309,8 +309,10 @@ def q_and_r(iw: np.ndarray, damping_ratio: np.ndarray, gamma_dx2: float, alpha_d
     are_real = discriminant >= 0.0
     root = np.sqrt(np.abs(discriminant))
     c_1 = mean + np.where(are_real, root, 1j * root)
-    # If both are real, the smaller one follows from the product without cancellation.
-    c_2 = np.where(are_real, product / np.where(are_real, c_1.real, 1.0), np.conj(c_1))
+    # If both are real, the smaller one follows from the product without cancellation. Otherwise c_1
+    # is replaced by 1 in the quotient, which is then not used.
+    divisor = np.where(are_real, c_1.real, 1.0)
+    c_2 = np.where(are_real, product / divisor, np.conj(c_1))
     r = 0.5 * np.sqrt(c_1 + iw) * np.sqrt(c_2 + iw)
     if gamma_dx2 == 0.0:
         # Drag is computed only together with leaf springs. So a = 0, and 4 q^2 = (i w)^2.

@@ -162,6 +162,8 @@ class OverChoices(Claim):
     def sentence_values(self) -> dict[str, Any]:
         """Return the values that sentences may use in addition to the fields of claims.json.
 
+        Their names are:
+
         holding : deviations at the combinations at which the claim holds
         failing : deviations at the combinations at which it fails
         last : deviations at the combinations at which the transition ends at the last release

@@ -15,7 +15,7 @@ REASONS = {
     "background": "gives background, or only says that something is shown",
     "definition": "definition or assumption",
     "other work": "is about other work",
-    "no model": "can be decided by no model of this project",
+    "no model": "cannot be decided by any model of this project",
     "not asked": "could be decided by a model, but is not examined here",
 }
 

@@ -261,7 +261,7 @@ class Evidence:
     ) -> list[bool | None]:
         """Return for each run whether a condition holds; None if that is undecided.
 
-        The two finest lattices decide if they agree. If they do not, or if lattices cannot decide,
+        If the two finest lattices agree, they decide. If they disagree or cannot decide,
         the regime of the exact solution decides, provided that ``ends`` is given and that this
         regime is known.
 

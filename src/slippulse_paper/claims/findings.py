@@ -88,6 +88,8 @@ def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
 
     The result is empty if a changed configuration has no runs without damping.
 
+    The result contains these numbers:
+
     ..._change : median ratio of L_trans at the largest damping ratio to L_trans without damping
     ..._scenes : number of scenes that were simulated at several damping ratios
     ..._runs : number of these scenes that have a transition both at the largest damping ratio and
@@ -113,6 +115,8 @@ def length_changes_by_damping(evidence: Evidence) -> dict[str, float]:
 
 def best_fit(evidence: Evidence) -> dict[str, float | str]:
     """Return the best fit to the published figure, as numbers for the text.
+
+    The result contains these numbers:
 
     release, ratio : release rule and damping ratio of the fit
     level, gamma : level of the pre-stress and elasticity ratio of the fit

@@ -147,6 +147,8 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
 def speeds_under_slip_weakening(evidence: Evidence) -> dict[str, float]:
     """Return exact front speeds under slip weakening, at one pre-stress level.
 
+    The result contains these numbers:
+
     slowest, fastest : range of these speeds
     level : the pre-stress level, SLIP_WEAKENING_LEVEL
     undamped : front speed at this level by the paper's formula, at constant friction

@@ -69,8 +69,9 @@ def change_by_refinement(rows: pd.DataFrame, part: str, quantity: str) -> pd.Ser
 def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
     """Return the sliding time divided by the crossing time.
 
-    The crossing time passes between the arrival of the front and that of shear waves from the top.
-    Both times are widths divided by the front speed, which cancels.
+    The crossing time is the time from the arrival of the front at a point of the fault to the
+    arrival of shear waves from the top (`crossing_width`). Both times are widths divided by the
+    front speed, which cancels.
     """
     return pulses["pulse_width"] / crossing_width(pulses)
 
@@ -78,16 +79,17 @@ def sliding_in_crossings(pulses: pd.DataFrame) -> pd.Series:
 def crossing_width(pulses: pd.DataFrame) -> pd.Series:
     """Return the distance behind a front at which shear waves from the top arrive at the fault.
 
-    Shear waves run at the speed sqrt(gamma/2). The waves of a source that moves along the top at
-    the speed v have a straight wave front, which meets the fault at the distance sqrt(2 v^2/gamma -
-    1) behind the source.
+    Where the longitudinal wave of the front meets the top, it sends shear waves down, so that their
+    source moves along the top with the front. Shear waves run at the speed sqrt(gamma/2). If the
+    source has the speed v, they have a straight wave front, which meets the fault at the distance
+    sqrt(2 v^2/gamma - 1) behind the source.
     """
     gamma = pulses.index.get_level_values("gamma")
     return np.sqrt(2.0 * pulses["speed"] ** 2 / gamma - 1.0)
 
 
 def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that ruptures under a displacement boundary turn into steady pulses.
+    """Judge whether ruptures under a displacement boundary turn into steady pulses.
 
     The pulses of the part pulse are judged at the positions of the part far, where most of them
     were followed. The template values are the numbers of `numbers_on_splits`.
@@ -103,10 +105,12 @@ def layer_regimes(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that pulses are also steady if the strength depends on the normal stress.
+    """Judge whether pulses are also steady if the strength depends on the normal stress.
 
     The column coupling has the factor by which the strength depends on this stress. The pulses that
     run to the right and to the left then differ, and each counts.
+
+    The template values are:
 
     steady_right, steady_left : number of steady pulses that run to each side
     steady_to, failed_from : largest coupling of a steady pulse, smallest of one that is not steady
@@ -136,10 +140,11 @@ def layer_pressure(evidence: Evidence, id: str) -> Qualitative:
 
 
 def layer_free_top(evidence: Evidence, id: str) -> Approximate:
-    """Judge that a point slides for one crossing time also if the top of the layer may rise.
+    """Judge whether a point also slides for one crossing time if the top of the layer is free.
 
-    The crossing time passes between the arrival of the front and that of shear waves from the top.
-    The part free has pulses with such a top.
+    A free top may rise. The crossing time is the time from the arrival of the front at a point of
+    the fault to the arrival of shear waves from the top (`crossing_width`). The part free has the
+    pulses of layers with such a top.
     """
     rows = rows_at_station(evidence, LAST)
     # The sliding time of each pulse with a free top, divided by its crossing time, should be 1.
@@ -158,7 +163,7 @@ def layer_free_top(evidence: Evidence, id: str) -> Approximate:
 
 
 def ranges_of_sliding_times(rows: pd.DataFrame) -> dict[str, float]:
-    """Return ranges of sliding times by words for the table of claims.
+    """Return the smallest and largest sliding times, each with words for the table of claims.
 
     The parts free and held have the same pulses, with a top that may rise and with one that cannot.
     """
@@ -187,6 +192,8 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
 
     In uniform pre-stress, a rupture must be a crack. If there is a barrier on one side, it must
     stop on this side and become a pulse on the other. Barriers are on the left.
+
+    The template values are:
 
     stop_low, stop_high : range of the distance from x = 0 to the stopped left front, divided by the
         balance distance
@@ -217,8 +224,8 @@ def layer_regimes_stress(evidence: Evidence, id: str) -> Qualitative:
 def on_two_grids(holds: Callable[[int], pd.Series]) -> Qualitative:
     """Judge a statement on the two finest grids of each run, which is undecided if they disagree.
 
-    holds : function that returns for each run if the statement holds. Its argument is 0 for the
-        finest grid and 1 for the second finest.
+    holds : function that returns for each run whether the statement holds. Its argument is 0 for
+        the finest grid and 1 for the second finest.
     """
     return Qualitative(decided=agreed_answers(holds(0), holds(1)))
 
@@ -261,6 +268,8 @@ def number_of_grids_with_split(rows: pd.DataFrame, part: str) -> pd.Series:
 def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
     """Return the pulses of the part far at the last station, with columns on how they split.
 
+    The added columns are:
+
     split_at, coarse_split_at, third_split_at : position at which the pulse splits on its finest,
         second finest and third finest grid, divided by the factor by which pulses are wider than
         those at the largest gamma; NaN if the pulse does not split, or if there is no such grid
@@ -295,6 +304,8 @@ def followed_pulses(evidence: Evidence, tolerance: float) -> pd.DataFrame:
 
 def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
     """Return how many pulses split, where they split, and how well the grid resolves the others.
+
+    The result contains these numbers:
 
     pulses, near_distance : number of pulses of the part pulse, and the distance to which they were
         followed at the largest gamma
@@ -332,6 +343,8 @@ def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
 def split_of_step_pulse(step: pd.DataFrame) -> dict[str, float]:
     """Return numbers on the split of the one pulse of the part far that belongs to the part step.
 
+    The result contains these numbers:
+
     step_energy : its fracture energy
     step_split : position at which it splits on its finest grid
     step_only_on_finest : 1 if it splits on no other grid, and 0 otherwise
@@ -349,6 +362,8 @@ def ranges_of_splits(split: pd.DataFrame) -> dict[str, float]:
     """Return at which gamma and fracture energies pulses split, and in which ranges of positions.
 
     Pulses at the largest gamma are narrow, and the others are wide.
+
+    The result contains these numbers:
 
     narrow_gamma, narrow_energy : largest gamma and fracture energy of narrow pulses that split
     split_low, split_high : range of the positions at which narrow pulses split, on the finest grid
@@ -382,6 +397,8 @@ def poorly_resolved(steady: pd.DataFrame) -> dict[str, float]:
     """Return numbers on the steady pulses for which the finest grid is rather coarse.
 
     Such pulses have less than RESOLVED_CELLS cells in gamma d_c, over which the strength falls.
+
+    The result contains these numbers:
 
     resolved_cells : the constant RESOLVED_CELLS
     unresolved : number of these pulses
@@ -430,6 +447,8 @@ def stops_on_one_side(evidence: Evidence, coarser: int) -> pd.Series:
 def layer_width(evidence: Evidence, id: str) -> Approximate:
     """Compare the pulse width in two dimensions with the paper's formula.
 
+    The template values are:
+
     least, most : range of the fracture energies
     one_dimension_low, one_dimension_high : range of the width divided by the width in one dimension
         with the same friction and with damping
@@ -467,7 +486,7 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 
 
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that pulses are steady if the fracture energy is below the energy that is released.
+    """Judge whether pulses are steady if the fracture energy is below the released energy.
 
     Each point of the map in `layer_map` below this limit counts as one run. Fracture energies are
     divided by the largest energy that the layer can release, so the limit is 1. Above the limit no
@@ -498,7 +517,9 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
 
 
 def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
-    """Return how many points of `layer_map` have each outcome, by words for the table of claims.
+    """Return how many points of `layer_map` have each outcome, with words for the table of claims.
+
+    Also return at how many points the pulse dies because the layer cannot release enough energy.
 
     points : rows of the map, whose column outcome has "grids differ" if the two grids disagree
     """
@@ -515,6 +536,8 @@ def points_by_outcome(points: pd.DataFrame) -> dict[str, float]:
 
 def map_numbers(evidence: Evidence) -> dict[str, float]:
     """Return the conditions of the runs of `layer_map`, and how many of its pulses would split.
+
+    The result contains these numbers:
 
     level_below, level_above, level : levels of the pre-stress before a step, and the level that all
         pulses enter at the step
@@ -600,6 +623,8 @@ def layer_in_plane(evidence: Evidence) -> dict[str, float]:
 def formula_numbers(pulses: pd.DataFrame) -> dict[str, float]:
     """Return numbers by the paper's formulas, at the pre-stress level that most pulses have.
 
+    The result contains these numbers:
+
     level : this level
     formula_speed : front speed by the formula
     gamma_low, thinnest_formula : smallest gamma, and pulse width by the formula at this gamma
@@ -634,6 +659,8 @@ def with_smallest_gamma(pulses: pd.DataFrame) -> pd.DataFrame:
 def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses by name, each with one value for each pulse.
 
+    The quantities are:
+
     wider : pulse width divided by the width in one dimension with the same friction and with
         damping
     sliding : time for which a point slides, divided by H/c_s, where c_s is the shear wave speed
@@ -657,6 +684,8 @@ def quantities_of_all_pulses(pulses: pd.DataFrame) -> dict[str, pd.Series]:
 def quantities_at_one_level(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of the pulses that differ only in gamma and fracture energy.
 
+    The quantities are:
+
     width : width by the paper's formula divided by the pulse width
     thinnest_width : pulse width at the smallest gamma, at which the layer is thinnest compared with
         the pulses
@@ -679,6 +708,8 @@ def quantities_in_one_dimension(pulses: pd.DataFrame) -> dict[str, pd.Series]:
     """Return quantities of pulses in one dimension with the same friction, and with damping.
 
     The quantities are those of the pulses that differ only in gamma and fracture energy.
+
+    The quantities are:
 
     line_speed : front speed
     line_width, line_slip : width and slip, divided by those of the paper's formulas
@@ -718,6 +749,8 @@ def far_numbers(evidence: Evidence) -> dict[str, float]:
 
     The result contains the numbers of `numbers_on_splits`: how many of these pulses split, and
     where.
+
+    The other numbers are:
 
     from_near_slip : largest relative change of the slip between the first and the last station, of
         pulses that do not split
@@ -767,10 +800,14 @@ def spread_with_level(pulses: pd.DataFrame) -> float:
 def across_a_step(evidence: Evidence) -> dict[str, float]:
     """Return how much the slip of a pulse that enters another pre-stress differs from steady slip.
 
+    The slip at the last station is compared with that of a pulse that is in the same pre-stress
+    from the start. The relative difference is given for the grid on which it is larger.
+
+    The result contains these numbers:
+
     lower, higher : the two levels of the pre-stress
-    upwards_difference, downwards_difference : relative difference between the slip at the last
-        station of the pulse that enters the higher or the lower pre-stress, and of a pulse that is
-        in it from the start. The grid with the larger difference counts.
+    upwards_difference : difference for the pulse that enters the higher level
+    downwards_difference : difference for the pulse that enters the lower level
     """
     rows = evidence.tables["layer"].query("part == 'step'").sort_values("station")
     low, high = float(rows["tau0"].min()), float(rows["tau0"].max())

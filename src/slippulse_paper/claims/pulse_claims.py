@@ -119,6 +119,8 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
     The pulse is compared with a reference: the pulse of an otherwise equal run that stays at the
     level 0. By theory the reference keeps its size.
 
+    The columns are:
+
     velocity_growth : sign of the velocity change; 0 if not larger than that of the reference
     width_growth : sign of the half-width minus that of the reference
 

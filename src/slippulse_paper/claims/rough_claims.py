@@ -26,11 +26,13 @@ def ensembles(evidence: Evidence, boundary: str) -> pd.DataFrame:
 
 
 def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that no pulse dies where the pre-stress is only a little rough.
+    """Judge whether all pulses survive where the pre-stress is only a little rough.
 
     The paper states no limit of the roughness. Ours is that the standard deviation of the
     pre-stress, divided by its level, is at most the tolerance. If pulses die in rougher ensembles,
     the claim needs this limit as a condition. Each pulse counts as one run.
+
+    The template values are:
 
     largest_rate : upper bound of the death rate, if no pulse dies where the pre-stress is smooth
     dying, stronger : number of pulses that die in rougher ensembles, and of all pulses in them
@@ -61,7 +63,7 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
 
 
 def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
-    """Judge that a rough pre-stress changes the pulses under a stress boundary, in all ensembles.
+    """Judge whether a rough pre-stress changes the pulses of all ensembles under a stress boundary.
 
     The pulses of an ensemble have changed if their velocities differ, with a relative standard
     deviation above the tolerance, or if one of them has died.
@@ -155,6 +157,8 @@ def death_rate_numbers(ensembles: pd.DataFrame) -> dict[str, float]:
 def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, float]:
     """Return the survival of pulses where most die, and a bound of the death rate where none dies.
 
+    The result contains these numbers:
+
     worst_level, worst_deviation, worst_stop : mean and standard deviation of the pre-stress, and
         the distance at which it ceases to be rough, in the ensemble with the highest death rate
     worst_survival, worst_low, worst_high : fraction of its pulses that survive to the end, and the
@@ -176,6 +180,8 @@ def survival_numbers(ensembles: pd.DataFrame, study: pd.DataFrame) -> dict[str, 
 
 def accuracy_numbers(checks: pd.DataFrame) -> dict[str, float]:
     """Return numbers that show how accurate the measured death rates are.
+
+    The result contains these numbers:
 
     grid_..., grid_fine_... : spacing dx and number of deaths on the coarsest and the finest lattice
     grid_pulses : number of pulses on each lattice
@@ -205,6 +211,8 @@ def settling_numbers(ensembles: pd.DataFrame, checks: pd.DataFrame) -> dict[str,
 
     Two ensembles are quoted: the one whose pre-stress has the shortest correlation length (short),
     and the one with the longest (smooth).
+
+    The result contains these numbers:
 
     short_mean : median relative difference from a steady pulse in the mean pre-stress
     smooth_local : the same for a steady pulse in the local pre-stress

@@ -41,6 +41,8 @@ def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> 
     The errors of these readings have two parts: one that all of them share, and one that is
     independent in each.
 
+    The result contains these numbers:
+
     own_edge_error : the independent part
     independent_chi_square : chi-square of all readings except arrows if no error was shared
 
@@ -59,6 +61,8 @@ def numbers_on_shared_errors(evidence: Evidence, pulls: Mapping[str, float]) -> 
 
 def judge_arrows(evidence: Evidence, id: str) -> Reading:
     """Judge the two arrows of the left panel by the chi-square that they add to the best fit.
+
+    Two template values are added to the readings:
 
     longer : how much longer each drawn arrow is than in the best fit to all other readings
     apart : distance between the fronts at the time at which the drawn arrow for T_trans ends

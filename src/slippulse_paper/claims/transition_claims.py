@@ -354,6 +354,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
 def deviations_at_first_stick(combinations: Iterable[Combination]) -> dict[str, list[float]]:
     """Return the deviations of the combinations with the criterion first stick, in three groups.
 
+    The groups are:
+
     undamped : all combinations without damping
     elastic, total : combinations with damping, by release rule
     """
@@ -382,7 +384,7 @@ def stress_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices
 
 
 def scaling(evidence: Evidence, id: str, boundary: str) -> OverChoices:
-    """Judge if time T and length L of the transition are proportional to the paper's estimates.
+    """Judge whether time T and length L of the transition are proportional to their estimates.
 
     T and L of the runs are fitted as powers of their estimates, and the exponents should be 1. The
     exponent that is farther from 1 decides. Its uncertainty includes the largest change if all runs
@@ -511,13 +513,13 @@ def front_arrest_position(evidence: Evidence, id: str) -> OverChoices:
 
 
 def judge_arrest_distance(evidence: Evidence, id: str, tables: list[pd.DataFrame]) -> Approximate:
-    """Compare the distance of the last release with |x_minus|, in some runs on three lattices.
+    """Compare the distance of the last release with |x_minus|.
 
     There are two additional requirements. The median difference between the two distances (gap)
     must be small. And the distance must be proportional to |x_minus|: if it is fitted as a power of
-    |x_minus|, the exponent must be near 1.
+    |x_minus|, the exponent must be near 1. The template value ``near`` is the verdict on the gap.
 
-    near : verdict on the gap
+    tables : the runs that are judged, in one table for each of three lattices, the finest first
     """
     measured, predicted = "last_release_distance", "balance_distance"
     median_gaps = [(table[predicted] - table[measured]).abs().median() for table in tables]

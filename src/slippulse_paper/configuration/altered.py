@@ -8,7 +8,7 @@ from typing import Any
 
 from ..records.provenance import changes
 from .resolve import all_simulations, resolve
-from .schema import Configuration
+from .schema import Configuration, Simulation
 
 # Symbols of the paper, and of this project, for the keys that have one.
 SYMBOLS = {"damping_ratio": "b", "left": "tau_l", "right": "tau_r", "width": "W"}
@@ -27,9 +27,11 @@ class Alterations:
         """Find the changes of each simulation, except those that have no influence of their own."""
         self.shipped, self.altered = shipped, altered
         self.changes_of = {}
-        self._altered_simulations = all_simulations(altered)
+        # In these simulations a key without a value of its own is None. Only `resolve` inserts the
+        # defaults of the model.
+        self._unresolved_simulations = all_simulations(altered)
         shipped_simulations = all_simulations(shipped)
-        for name, simulation in self._altered_simulations.items():
+        for name, simulation in self._unresolved_simulations.items():
             # A simulation that is not shipped is compared with itself under the shipped model.
             shipped_simulation = shipped_simulations.get(name, simulation)
             # Presets are not compared, and so no accuracy is given.
@@ -72,12 +74,10 @@ class Alterations:
         lines = []
         for change in changes(self.shipped.model.plain(), self.altered.model.plain()):
             key = change["key"]
-            # A simulation with its own beta does not use the default damping ratio either.
-            overriding_keys = {key, "beta"} if key == "damping_ratio" else {key}
             overriding = [
                 name
-                for name, simulation in self._altered_simulations.items()
-                if overriding_keys & {*simulation.plain()}
+                for name, simulation in self._unresolved_simulations.items()
+                if _overrides_default(simulation, key)
             ]
             if overriding:
                 lines.append(
@@ -85,6 +85,16 @@ class Alterations:
                     f" own value: {', '.join(overriding)}"
                 )
         return lines
+
+
+def _overrides_default(simulation: Simulation, key: str) -> bool:
+    """Return True if an unresolved simulation does not use the model's default for a key.
+
+    In such a simulation a key without a value of its own is None.
+    """
+    # A simulation with its own beta does not use the default damping ratio either.
+    own_keys = ("damping_ratio", "beta") if key == "damping_ratio" else (key,)
+    return any(getattr(simulation, own_key, None) is not None for own_key in own_keys)
 
 
 def _equation(change: Mapping[str, Any]) -> str:

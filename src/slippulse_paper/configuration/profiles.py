@@ -146,7 +146,8 @@ def _lists_of(profile: Mapping[str, Any]) -> list[Sequence]:
 
 def prestress_of(profile: Mapping[str, Any]) -> Prestress:
     """Return the pre-stress of one expanded profile."""
-    if not any(key in profile for key in TABLES):
+    has_table = any(key in profile for key in TABLES)
+    if not has_table:
         return Prestress(**profile)
     # The results are cached. The cache needs a hashable argument.
     return _prestress_of_table(json.dumps(profile, sort_keys=True))

@@ -79,8 +79,8 @@ def draw_boundary(figure: Figure, panels: list[Axes], runs: pd.DataFrame, bounda
     add_legend_above_lines(ratio_axes, on_left=are_rising)
     draw_prestress_inset(length_axes, runs, level_column)
     length_axes.set_title(BOUNDARIES[boundary], loc="center")
-    for column in (level_column, second_column):
-        add_colour_bar(figure, panels, column)
+    for parameter in (level_column, second_column):
+        add_colour_bar(figure, panels, parameter)
 
 
 def add_legend_above_lines(axes: Axes, *, on_left: bool) -> None:
@@ -91,13 +91,14 @@ def add_legend_above_lines(axes: Axes, *, on_left: bool) -> None:
     axes.set_ylim(bottom, top + 0.15 * (top - bottom))
 
 
-def add_colour_bar(figure: Figure, panels: list[Axes], column: str) -> None:
+def add_colour_bar(figure: Figure, panels: list[Axes], parameter: str) -> None:
     """Add the colour bar of a parameter below a column of panels."""
     look: Look = {"location": "bottom", "aspect": 35, "pad": 0.02}
-    # The scale of left is stretched, and ticks at equal distances would overlap.
-    look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if column == "left" else None
-    bar = figure.colorbar(colour_scale(column), ax=panels, **look)
-    bar.set_label(f"${SYMBOLS[column]}$")
+    # The colour scale of the pre-stress on the left is not linear, so that ticks at equal distances
+    # would overlap.
+    look["ticks"] = [-2.0, -1.0, -0.5, 0.0] if parameter == "left" else None
+    bar = figure.colorbar(colour_scale(parameter), ax=panels, **look)
+    bar.set_label(f"${SYMBOLS[parameter]}$")
 
 
 def draw_prestress_inset(axes: Axes, runs: pd.DataFrame, level_column: str) -> None:

@@ -39,6 +39,7 @@ def table(data: dict, tables: dict[str, pd.DataFrame], settings: dict) -> pd.Dat
     exact = tables["pulse_memory"]
     parts = [exact.assign(role="exact")]
     held_top = data["pulses_across_a_step"]
+    # The lattices are drawn over the same distances as the exact slip.
     for number in range(held_top.sizes["point"]):
         parts.append(lattice_slip(point(held_top, number), exact).assign(role="lattice"))
     held_stress = data["regimes_beyond"]

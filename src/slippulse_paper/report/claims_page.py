@@ -58,14 +58,16 @@ def claims_page(claims: Rows, altered: Rows, findings: Rows, tables: Iterable[st
     tables : paths of all tables relative to the page, which links to them
     """
     ledger = Ledger(claims)
-    texts = [finding["text"] for finding in findings]
+    # All texts of the page that are written in Markdown. They are converted to HTML together.
+    markdown_texts = [finding["text"] for finding in findings]
     groups: dict[str, list[Entry]] = {}
     for claim in sorted(ledger, key=lambda claim: WORST_FIRST.index(claim.verdict)):
-        texts += [claim.statement, claim.why, claim.evidence_text()]
+        markdown_texts += [claim.statement, claim.why, claim.evidence_text()]
         groups.setdefault(claim.verdict, []).append(claim)
     return page(
         "claims.html",
-        html=markup_of(texts),
+        # The template looks up the HTML of a text in this mapping.
+        html=markup_of(markdown_texts),
         summary=ledger.summary(),
         # Claims that follow from others, or that are not in the paper, are not counted.
         uncounted=len(ledger.claims) - ledger.count(),

@@ -402,8 +402,8 @@ def edges(study: pd.DataFrame) -> str:
         value, quantity = plain(row["value"]), plain(row["quantity"])
         rows.append((row["family"], value, quantity, error, tolerance, outcome))
     columns = [
-        text_column("edge", 16),
-        text_column("value", 28),
+        text_column("extreme case", 16),
+        text_column("parameters", 28),
         text_column("compared", 18),
         number_column("error", 12),
         number_column("tolerance", 12),

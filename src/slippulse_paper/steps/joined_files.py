@@ -96,7 +96,8 @@ def join_grid_studies(paths: Sequence[str], finest: str, joined: str) -> None:
     for chunk, numbers in zip(chunks, run_numbers, strict=True):
         # Replace the number of the run in the chunk by its number in the sweep.
         chunk["point"] = np.array(numbers)[chunk["point"].astype(int)]
-    # Remove the columns that identify a run, because the rows that are added next would lack them.
+    # Remove the columns that identify a run. The rows that are added next would have no values in
+    # them. At the end they are inserted again, for all rows.
     keys = run_columns(measured.columns)
     study = pd.concat(chunks).set_index(["point", "quantity"]).drop(columns=keys)
     # A chunk has no row for a quantity that was measured in none of its runs. The joined table gets

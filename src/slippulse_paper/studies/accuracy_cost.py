@@ -220,6 +220,8 @@ def crack_errors(setting: Setting) -> dict[str, float]:
 
     Exact values are for max(DAMPING_RATIOS), with which `Setting.run_crack` runs the crack.
 
+    The result contains these numbers:
+
     share_time : error of the time at which the front has covered COVERED_FRACTION of its path
     arrest_position : error of the distance that the front has run at the end
     """
@@ -238,6 +240,8 @@ def crack_errors(setting: Setting) -> dict[str, float]:
 
 def cost_of_run(run: xr.Dataset) -> dict[str, float]:
     """Return the cost of a run, and the residual of its energy balance.
+
+    The result contains these numbers:
 
     block_updates : number of sliding blocks, summed over all time steps
     work : number of evaluations of the force on a single block. The textbook scheme evaluates each

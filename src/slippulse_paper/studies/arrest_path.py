@@ -23,6 +23,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     The pre-stress and the release rule are those of the first run whose left front stops. The
     figure draws only the runs that share them.
 
+    The columns are:
+
     time : time at which this fraction remains, in units of the length of the path, |x_minus|
     to_go : the remaining fraction
     """

@@ -24,6 +24,8 @@ RATIO_COUNT = 33
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the pre-stress at which a front has a given speed, one row for each grid point.
 
+    The columns are:
+
     damping_ratio : b = beta/dx
     ratio_arsinh : asinh(b/RATIO_SCALE), one coordinate of the grid
     excess_log : ln(v - 1), the other coordinate

@@ -179,6 +179,8 @@ def measured_outcome(case: Case, front_window: float) -> Outcome:
 def additional_quantity(run: xr.Dataset, quantity: str) -> float:
     """Return a quantity of a run that is not in the table of measured numbers.
 
+    The quantities are:
+
     meeting time : time at which fronts from two nucleations meet, halfway between these
     asymmetry : largest difference between the slip and its mirror image about the meeting point,
         divided by the largest slip

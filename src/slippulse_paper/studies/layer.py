@@ -261,6 +261,8 @@ def rows_at_far_stations(part: str, scene: LayerScene, run: LayerRun, side: int 
     In a split pulse, points stick early, behind its narrow tip, and later slide again. The argument
     ``part`` is the value of the column part in all rows.
 
+    The columns are:
+
     split_position : distance at which a point first sticks early, between the first and the last
         station; NaN if none does
     sliding_again : length of the fault beyond the first station that slides again at the end
@@ -533,6 +535,8 @@ def measured_rows(
 def numbers_of_whole_run(scene: LayerScene, run: LayerRun, side: int) -> dict[str, float]:
     """Return the numbers of a run that do not belong to a station.
 
+    The result contains these numbers:
+
     first_stick : time at which the middle of the nucleation region sticks. Infinite if it never
         sticks. NaN if the scene has a finite trail, because then the middle is not solved until the
         end: only the part of the layer within this length behind the waves is.
@@ -587,6 +591,8 @@ def pulse_at_station(run: LayerRun, position: float, window: float) -> dict[str,
 
 def one_dimensional_theory(scene: LayerScene) -> dict[str, float]:
     """Return the pulse of the paper's one-dimensional equation, for the parameters of a scene.
+
+    The result contains these numbers:
 
     paper_... : by the paper's formulas, without weakening and damping
     damped_... : with the weakening of the scene and the damping BETA

@@ -102,6 +102,8 @@ def outcome(slips: Mapping[str, float]) -> str:
     one) or from_above. The slip of this pulse at the last position is in NAME_slip, and halfway in
     NAME_slip_halfway. The steady slip is uniform_slip.
 
+    The outcomes are:
+
     dying : the slip in uniform pre-stress falls along the path
     growing : the slip in uniform pre-stress rises along the path, or one of the other pulses rises
         beyond the steady slip

@@ -59,7 +59,8 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return exact transitions and the paper's estimates.
 
     There is one row for each run of figure 5 and each combination of choices. The table
-    ``open_choices`` lists the choices, with one row for each value of a choice.
+    ``open_choices`` lists the values of the damping ratio, with the release rule of each, and of
+    the fraction. Both kinds of nucleation are added by `stress_arrests`.
     """
     with_springs = pd.DataFrame(parameters(settings["sweeps"]["scaling_displacement"]))
     # The exact transition is known if the level, the same on both sides, is positive.

@@ -27,6 +27,8 @@ DISTANCES_BEYOND = np.concatenate(
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each scene and distance x from the step, with the final slip there.
 
+    The columns are:
+
     before, level : pre-stress before the step and beyond it
     steady_before, steady : slip of a steady pulse in each of the two levels of pre-stress
     memory : distance beyond the step from which on the pulse is steady again

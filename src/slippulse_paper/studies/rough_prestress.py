@@ -211,6 +211,8 @@ def slip_numbers(ensemble: Ensemble, pulse: SteadyPulse, memory: float) -> dict[
 def slowness_numbers(ensemble: Ensemble, pulse: SteadyPulse) -> dict[str, float]:
     """Compare the slowness of fronts (time per distance) with that of steady fronts.
 
+    The result contains these numbers:
+
     slowness : mean over all runs, divided by the slowness of the steady pulse
     slowness_off : largest relative deviation of a run from the slowness that theory predicts, which
         is the mean over all blocks of the slowness of a steady front at the local pre-stress
@@ -364,6 +366,8 @@ def end_state(run: Recorded, integral: np.ndarray) -> dict[str, float]:
     """Return the velocity at the crest of the right pulse at the end, simulated and by theory.
 
     Also return whether the rupture is still a crack.
+
+    The result contains these numbers:
 
     velocity : simulated velocity at the crest, where the velocity is largest
     exact_velocity : two waves meet at the crest. One left x_* and ran to the right. The other left

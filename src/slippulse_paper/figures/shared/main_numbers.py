@@ -45,6 +45,8 @@ def with_symbols(label: str) -> str:
 def main_numbers(run: pd.Series) -> pd.DataFrame:
     """Return the main measured numbers of a run, one in each row.
 
+    The columns are:
+
     quantity : name of the measured column
     label : its label, from LABELS
     value : its measured value

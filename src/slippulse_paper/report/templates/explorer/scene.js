@@ -93,13 +93,13 @@ function rowsOf({ scene, rupture, exact, pulse, paper, steady }) {
     if (front.slow.stopped) rows.push([`${side} front stops at <i>t</i>`, time, null]);
   }
   if (gamma === 0 && left < 0 && right === 0 && alpha === 0) {
-    rows.push(["largest slip velocity, far away", balance(scene).peak, null]);
+    rows.push(["largest slip velocity, far from <i>x</i> = 0", balance(scene).peak, null]);
   }
   if (pulse && paper) {
     const late = steady && deviates(pulse, steady) ? " (not yet steady)" : "";
     rows.push([`width of the right pulse at the end${late}`, pulse.width, paper.width]);
     if (steady) rows.push(["width of the steady right pulse", steady.width, paper.width]);
-    rows.push([`slip behind this pulse at the end${late}`, pulse.slip, paper.slip]);
+    rows.push([`slip behind the right pulse at the end${late}`, pulse.slip, paper.slip]);
     if (steady) rows.push(["slip behind the steady right pulse", steady.slip, paper.slip]);
   }
   if (paper) {
