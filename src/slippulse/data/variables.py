@@ -32,7 +32,7 @@ VARIABLES |= {
     "friction_loss": "work against friction above kinetic friction, such as the fracture energy "
     "of slip weakening. With the law `linear_rate`, the variable `viscous_loss` contains this "
     "work instead",
-    "event_loss": "energy that the textbook scheme loses when blocks stick within a time step",
+    "event_loss": "energy that the scheme `fixed_step` loses when blocks stick within a time step",
     "energy_residual": "error of the energy balance divided by the largest term of the balance",
     "end_time": "time at which the run ended",
     "stopped_because": "reason why the run ended",
@@ -53,9 +53,11 @@ VARIABLES |= {
     "pulse_blocks": "number of blocks in the narrowest pulse at the end of the run",
     "run_flags": "reasons why the numbers of the run may differ from the numbers of the model; "
     "empty if there is no such reason",
-    "limit_position": "position where the construction of the exact solution ends, in units of H",
-    "limit_time": "time at which the construction of the exact solution ends",
-    "limit_reason": "reason why the construction of the exact solution ends",
+    "limit_position": "position of the event after which the exact solution is not known "
+    "everywhere, in units of H",
+    "limit_time": "time of the event after which the exact solution is not known everywhere",
+    "limit_reason": "reason why the exact solution is unknown where a wave from the event at "
+    "`limit_position` and `limit_time` has arrived; empty if it is known everywhere",
     "point": "number of the run in its simulation, counted from 0",
     "row_size": "number of blocks of a run",
     "row_start": "index of the first block of a run in the arrays of all blocks",

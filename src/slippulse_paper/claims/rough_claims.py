@@ -82,12 +82,14 @@ def rough_stress_pulses_change(evidence: Evidence, id: str) -> Qualitative:
     # The ensemble with the smoothest pre-stress is shown with the claim.
     smoothest = rows.loc[rows["deviation"].idxmin()]
     further = {
-        "smallest standard deviation": smoothest["deviation"],
-        "spread of the velocities at the smallest standard deviation": float(
+        "smallest standard deviation of the pre-stress": smoothest["deviation"],
+        "spread of the velocities at the smallest standard deviation of the pre-stress": float(
             velocity_spread[smoothest.name]
         ),
-        "cracks at the smallest standard deviation": smoothest["cracks"],
-        "deaths of pulses at the smallest standard deviation": smoothest["deaths"],
+        "cracks at the smallest standard deviation of the pre-stress": smoothest["cracks"],
+        "deaths of pulses at the smallest standard deviation of the pre-stress": smoothest[
+            "deaths"
+        ],
     }
     return Qualitative(decided=[*changed], further=further)
 

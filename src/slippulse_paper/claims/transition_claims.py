@@ -311,7 +311,7 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
     estimate = float(scene[f"paper_transition_{quantity}"])
     return {
         "arrow of figure 4 divided by the estimate": reading["value"] / estimate,
-        "reading error of the arrow divided by the estimate": reading["reading_error"] / estimate,
+        "reading error of the ratio of arrow to estimate": reading["reading_error"] / estimate,
     }
 
 
