@@ -59,8 +59,8 @@ def _check_simulation(simulation: Simulation, model: Model, accuracy: Mapping) -
         expand(with_promised_spacings(with_ends_of_lists(sweep | {"coarser": coarsest})))
     except ValueError as error:
         lattice = (
-            f"on the coarsest lattice of the grid study, on which dx is {coarsest:g} times the dx of"
-            " the run"
+            f"on the coarsest lattice of the grid study, on which dx is {coarsest:g} times the dx"
+            " of the run"
         )
         raise ValueError(f"{error} ({lattice})") from None
 
