@@ -92,7 +92,7 @@ CASES = {
     "worst: failed": (rules.worst, ([YES, NO, OPEN],), NO),
     "worst: none": (rules.worst, ([],), NONE),
     "every: all hold": (every, (40, 0, 0), YES),
-    "every: under a condition": (partial(every, condition=True), (40, 0, 0), CAVEAT),
+    "every: under a condition": (partial(every, has_caveat=True), (40, 0, 0), CAVEAT),
     "every: few undecided": (every, (36, 0, 4), CAVEAT),
     "every: many undecided": (every, (35, 0, 5), OPEN),
     "every: all undecided": (every, (0, 0, 3), OPEN),
