@@ -307,11 +307,11 @@ class Prestress(ExplainsRemovedNames):
 
     @cached_property
     def nucleation_reach(self) -> float:
-        """Distance from x = 0 within which all bumps lie, and all points at which tau can be 1."""
+        """Distance from x = 0 within which all bumps lie, and all ``points`` that can reach 1."""
         distances = [0.0]
         for centre, _, width in self.bumps:
             distances.append(abs(centre) + BUMP_REACH_IN_WIDTHS * width)
-        # Together with the bumps, a smaller value of the table can reach 1 as well.
+        # A point whose own value is below 1 reaches 1 if positive bumps add the rest.
         lowest_value = 1.0 - sum(max(amplitude, 0.0) for _, amplitude, _ in self.bumps)
         distances += [abs(x) for x, tau in self.points if tau >= lowest_value]
         return max(distances)

@@ -382,8 +382,8 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
                 is_out_of_reach = not is_before_kink
             else:
                 # A slip rate that reaches the kink has either passed it at the end of the step, or
-                # has turned back before. A curve that turns back lies on one side of its tangent at
-                # the start of the step, so that this tangent passes the kink before the end.
+                # has turned back before. A curve that turns back bends away from its tangent at the
+                # start of the step, so that this tangent is beyond the kink at the end.
                 tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
                 largest = max(sign * motion.end_velocity[i], sign * tangent_at_end)
                 is_out_of_reach = largest < sign * law_kink.argument_at_kink

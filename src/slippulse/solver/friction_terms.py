@@ -78,8 +78,8 @@ def begin_weakening(motion, law_kink, block):
             # The slip at the start of the step, plus the slip by earlier events of the step.
             slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
             motion.slip_at_release[block] = slip
-        # The argument of the law is 0 now. From here to the kink, friction falls to its value beyond
-        # the kink.
+        # The argument of the law is 0 now. From here to the kink, friction falls to its value
+        # beyond the kink.
         return law_kink.friction_beyond + weakening_slope * law_kink.argument_at_kink
     return 0.0
 

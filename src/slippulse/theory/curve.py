@@ -446,10 +446,16 @@ def _panels_of_crossings(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return, for each point, the panel on which its characteristic to the right meets the curve.
 
-    There T + x rises to its value at the point (level). Regions, the parts of the curve between
-    restarts, are searched from that of the point to the right. In the first region in which T + x
-    reaches the level, it is the panel on which T + x rises to the level for the last time. Also
-    return a mask that is False for points without a panel; for these the last panel is returned.
+    T + x rises to the level t + y of the point there. The curve is divided into regions at the
+    restarts of its left fronts, where a slow front became faster than the waves again or met
+    another front, so that T + x has a maximum. In each region T + x first falls, where the left
+    front is slow, and then rises. The first region in which it rises to the level counts, but none
+    on the left of the point. At the beginning of this region T + x may also be above the level, but
+    then it falls below it. So the panel is the one on which T + x rises to the level for the last
+    time.
+
+    Also return a mask that is False for points without a panel; for these the last panel is
+    returned.
 
     edges : ends of the panels
     lowest_levels : for each region and each of its panels, the lowest T + x at the right ends of

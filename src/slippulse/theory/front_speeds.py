@@ -126,8 +126,8 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
 
     Parameters
     ----------
-    speed, damping_ratio : floats or arrays, broadcast: front speed divided by the wave speed, from 1
-        to 1e100, and beta/dx
+    speed, damping_ratio : floats or arrays, broadcast: front speed (wave speeds), from 1 to 1e100,
+        and beta/dx
     release : "total" or "elastic", as in `front_speed`
 
     Returns
@@ -181,9 +181,9 @@ def log_prestress_in_chunks(
 def first_guess(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
     """Return an estimate of ln(v - 1), with which the search for the front speed v starts.
 
-    Without damping and with strong damping, the speed has a simple formula. In between, the estimate
-    is interpolated under rule "total". Under rule "elastic", it starts from the formula that is
-    nearer, with a fitted correction.
+    Without damping and with strong damping, the speed has a simple formula. In between, the
+    estimate is interpolated under rule "total". Under rule "elastic", it is one of these formulas
+    with a fitted correction, depending on the damping ratio.
     """
     b, distance_to_1 = damping_ratio, 1.0 - tau
     # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).

@@ -33,8 +33,8 @@ class Knots(NamedTuple):
     numbers.
 
     stick is the stick time, or the final time if the block still slides then. kind is SLIDING,
-    FASTER_THAN_WAVES, SLOWER_THAN_WAVES or BRIEF_SLIP. velocity is du/dt at the time stick. The last two are its derivatives by
-    xi = t - x and by eta = t + x.
+    FASTER_THAN_WAVES, SLOWER_THAN_WAVES or BRIEF_SLIP. velocity is du/dt at the time stick. The
+    last two are its derivatives by xi = t - x and by eta = t + x.
     """
 
     x: np.ndarray

@@ -127,8 +127,8 @@ class Rupture(ExplainsRemovedNames):
         self._parts = [self._make_part(stretch, until) for stretch in self.stretches]
         self._solved_parts = self._parts
         if prestress.symmetric:
-            # A symmetric scene is computed at x >= 0 only. So a part is not solved if it lies on the
-            # left, with its right end (the last edge of a panel) at x <= 0.
+            # A symmetric scene is computed at x >= 0 only. A part on the left, whose right end (the
+            # last panel edge) is at x <= 0, is not solved.
             self._solved_parts = [part for part in self._parts if part.curve.edges[-1] > 0.0]
 
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:

@@ -350,9 +350,10 @@ def split_of_step_pulse(step: pd.DataFrame) -> dict[str, float]:
     step_split : position at which it splits on its finest grid
     step_only_on_finest : 1 if it splits on no other grid, and 0 otherwise
 
-    step : the rows of `followed_pulses` with this pulse: one row, or none in a changed configuration
+    step : the rows of `followed_pulses` with this pulse: one row, or none if the pulse was not
+        followed farther
     """
-    # The minimum of one value is this value, and NaN if there is no row.
+    # The minimum of one value is this value. It is NaN if there is no row.
     return {
         "step_energy": float(step["fracture_energy"].min()),
         "step_split": float(step["split_at"].min()),
