@@ -64,8 +64,9 @@ class Prestress(ExplainsRemovedNames):
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``. The background
     ``level`` is ``left`` for x < 0 and ``right`` for x >= 0. Each step replaces it beyond a
-    position. If ``points`` are given, the background is linear between them instead (see
-    `through`). The rupture nucleates where the profile reaches 1, which usually is at x = 0.
+    position. If ``points`` are given, they are a table of the background, which is linear between
+    them (see `through`). The rupture nucleates where the profile reaches 1, which usually is at
+    x = 0.
     Source: section III of the paper; steps, bumps and points are an addition of this project.
 
     Parameters

@@ -24,8 +24,8 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
-    Theory knows the final regime of every rupture with a constant level on each side. If there are
-    steps, it knows only that of a single pulse that passes all of them.
+    Theory knows most final regimes if each side has a constant level (`final_regime`). If there
+    are steps, it knows only that of a single pulse that passes all of them.
 
     still_fraction : a point is at rest below this fraction of the largest slip velocity
     """

@@ -244,6 +244,7 @@ class DependenceDomains:
                 [source_times_slope * nodes.eta_minus_h, source_times_slope * nodes.xi_minus_g]
             )
 
+        # The two integrals with K', each named after its factor (eta - h) or (xi - g).
         with_eta_minus_h, with_xi_minus_g = self._integrate(kernel_terms, component_shape=(2,))
         by_xi = 0.5 * (k * with_eta_minus_h - at_left_end) - by_decay
         by_eta = 0.5 * (k * with_xi_minus_g + at_right_end) - by_decay
@@ -351,7 +352,7 @@ class DependenceDomains:
         return strain + 0.5 * self._integrate(derivative_of_braces)
 
     def _p_minus_mean_at_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
-        """Return p(y) - [E p(x_l) + E p(x_r)]/2 at all points (order 0), or the same of dp/dx (1).
+        """Return p(y) - [E p(x_l) + E p(x_r)]/2 (order 0), or the same with dp/dx (order 1).
 
         p is the static solution, E the decay factor, and x_l and x_r are the ends of the integral.
         """

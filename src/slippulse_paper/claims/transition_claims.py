@@ -347,8 +347,8 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
         "of_runs": len(ratio),
         # Runs that reach the printed slip with tau = tau_0.
         "reach": ratio.count(),
-        # Runs that reach it with tau = 1. This is the pre-stress at x = 0, where the paper defines
-        # T_trans, so it is what the paper literally says.
+        # Runs that reach it with tau = 1. This is the pre-stress at x = 0, the point whose slip the
+        # paper uses to define T_trans, so it is what the paper literally says.
         "reach_literally": runs["slip_time_nucleation"].count(),
     }
     return over_choices(
