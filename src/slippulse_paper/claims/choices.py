@@ -184,13 +184,12 @@ class OverChoices(Claim):
             and combination.result["deviation"] is not None
         ]
         in_doubt = self._combination_in_doubt()
-        settings = [
-            f"{CHOICE_WORDS[name]} *{value}*"
-            if isinstance(value, str)
-            else f"{CHOICE_WORDS[name]} = {text_of_value(value)}"
-            for name, value in in_doubt.choice.items()
-            if name in CHOICE_WORDS
-        ]
+        settings = []
+        for name, value in in_doubt.choice.items():
+            if name in CHOICE_WORDS:
+                is_text = isinstance(value, str)
+                shown_value = f"*{value}*" if is_text else f"= {text_of_value(value)}"
+                settings.append(f"{CHOICE_WORDS[name]} {shown_value}")
         return self.shown.template_values | {
             "holding": deviations[True],
             "failing": deviations[False],

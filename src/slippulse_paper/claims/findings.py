@@ -125,12 +125,15 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
     release, ratio : release rule and damping ratio of the fit
     level, gamma : level of the pre-stress and elasticity ratio of the fit
     low, high : ends of the confidence region of the damping ratio at 95 %
+    other_low, other_high : the same with the other release rule
     chi_square, degrees : chi-square and degrees of freedom
     difference : chi-square with the other release rule, minus chi-square of the best fit
     """
     fits = infer_parameters(evidence.tables["published_figure"])
     best = fits["best"]
     low, high = best["regions"][0.95]
+    other_release = "elastic" if best["release"] == "total" else "total"
+    other_low, other_high = fits[other_release]["regions"][0.95]
     return {
         "release": best["release"],
         "chi_square": best["chi2"],
@@ -140,6 +143,8 @@ def best_fit(evidence: Evidence) -> dict[str, float | str]:
         "gamma": best["gamma"],
         "low": low,
         "high": high,
+        "other_low": other_low,
+        "other_high": other_high,
         "difference": fits["difference"],
     }
 

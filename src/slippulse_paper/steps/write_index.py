@@ -13,7 +13,7 @@ from ..report.texts import read_captions
 # Headings of groups of figures, by the first part of the names of the figures.
 HEADINGS = {
     "fig": "The figures of the paper",
-    "study_": "Beyond the paper",
+    "study_": "Studies beyond the paper",
     "sweep_": "User-defined sweeps",
 }
 
