@@ -1,5 +1,6 @@
 """Claims: the rule of each kind on invented numbers, claims from invented tables, their texts."""
 
+import itertools
 import json
 from dataclasses import replace
 from functools import partial
@@ -34,7 +35,9 @@ from slippulse_paper.claims.pulse_claims import (
 )
 from slippulse_paper.claims.rules import VERDICTS, WORST_FIRST, Uncertain
 from slippulse_paper.claims.transition_claims import (
+    SHOWN_FRACTION,
     divergence,
+    exact_runs,
     front_arrest_position,
     judge_rise_with_prestress,
     lattice_runs,
@@ -92,7 +95,7 @@ CASES = {
     "worst: failed": (rules.worst, ([YES, NO, OPEN],), NO),
     "worst: none": (rules.worst, ([],), NONE),
     "every: all hold": (every, (40, 0, 0), YES),
-    "every: under a condition": (partial(every, condition=True), (40, 0, 0), CAVEAT),
+    "every: under a condition": (partial(every, has_caveat=True), (40, 0, 0), CAVEAT),
     "every: few undecided": (every, (36, 0, 4), CAVEAT),
     "every: many undecided": (every, (35, 0, 5), OPEN),
     "every: all undecided": (every, (0, 0, 3), OPEN),
@@ -336,6 +339,19 @@ def test_an_arrest_is_not_testable_if_every_level_would_make_blocks_slide_back()
     claim = transition_time_underestimated(StrongBarriers(), "underestimate")
     assert claim.verdict() == NONE
     assert np.isnan([*claim.json_fields()["further"].values()]).all()
+
+
+def test_claims_show_exact_runs_with_the_choices_and_the_gaussian_of_figure_5():
+    choices = itertools.product(
+        ("elastic", "total"), (0.0, 0.1), ("tent", "Gaussian"), (0.5, SHOWN_FRACTION)
+    )
+    names = ["release", "damping_ratio", "nucleation", "fraction"]
+    table = pd.DataFrame(choices, columns=names).assign(boundary="stress", left=-0.5)
+    figure_5 = pd.DataFrame({"release": ["total"], "damping_ratio": [0.1]})
+    tables = {"open_choices": table, "scaling_stress": figure_5}
+    runs = exact_runs(SimpleNamespace(tables=tables), "stress")
+    assert len(runs) == len(table)
+    assert [runs[0].choice[name] for name in names] == ["total", 0.1, "Gaussian", SHOWN_FRACTION]
 
 
 def test_a_run_whose_front_has_not_moved_is_undecided():

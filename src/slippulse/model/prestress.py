@@ -64,8 +64,9 @@ class Prestress(ExplainsRemovedNames):
 
     The profile is ``level(x) + (peak - level(x)) exp(-x^2 / 2 width^2) + bumps``. The background
     ``level`` is ``left`` for x < 0 and ``right`` for x >= 0. Each step replaces it beyond a
-    position. If ``points`` are given, the background is linear between them instead (see
-    `through`). The rupture nucleates where the profile reaches 1, which usually is at x = 0.
+    position. If ``points`` are given, they are a table of the background, which is linear between
+    them (see `through`). The rupture nucleates where the profile reaches 1, which usually is at
+    x = 0.
     Source: section III of the paper; steps, bumps and points are an addition of this project.
 
     Parameters
@@ -307,11 +308,11 @@ class Prestress(ExplainsRemovedNames):
 
     @cached_property
     def nucleation_reach(self) -> float:
-        """Distance from x = 0 within which all bumps lie, and all points at which tau can be 1."""
+        """Distance from x = 0 within which all bumps lie, and all ``points`` that can reach 1."""
         distances = [0.0]
         for centre, _, width in self.bumps:
             distances.append(abs(centre) + BUMP_REACH_IN_WIDTHS * width)
-        # Together with the bumps, a smaller value of the table can reach 1 as well.
+        # A point whose own value is below 1 reaches 1 if positive bumps add the rest.
         lowest_value = 1.0 - sum(max(amplitude, 0.0) for _, amplitude, _ in self.bumps)
         distances += [abs(x) for x, tau in self.points if tau >= lowest_value]
         return max(distances)

@@ -24,7 +24,8 @@ def predictions(runs: list[Run], settings: dict) -> pd.DataFrame:
 def _regime(run: Run, still_fraction: float) -> str:
     """Return the final regime of a run; UNDECIDED if its profile has bumps or is a table.
 
-    Theory knows the final regime only for a constant level, or some steps, on each side.
+    Theory knows most final regimes if each side has a constant level (`final_regime`). If there
+    are steps, it knows only that of a single pulse that passes all of them.
 
     still_fraction : a point is at rest below this fraction of the largest slip velocity
     """
@@ -34,14 +35,17 @@ def _regime(run: Run, still_fraction: float) -> str:
     # Without bumps and points, a rupture can only start at x = 0.
     if profile(0.0) < 1.0:
         return "arrested"
-    levels: tuple[float, float] | None = (profile.left, profile.right)
+    levels = (profile.left, profile.right)
     if profile.steps:
-        levels = _levels_of_long_pulse(run)
-    if levels is None:
-        return UNDECIDED
-    # Beyond the steps, the velocity of a pulse falls with the integral of negative pre-stress.
-    if profile.steps and max(levels) < 0.0:
-        return "pulse, one-way, decaying"
+        levels_of_pulse = _levels_around_pulse(run)
+        if levels_of_pulse is None:
+            return UNDECIDED
+        # With two negative levels, `final_regime` would return "arrested", since it assumes that
+        # both fronts stop near x = 0. Here a pulse has left x = 0 long before it enters the second
+        # negative level, where its velocity falls with the integral of the pre-stress.
+        if max(levels_of_pulse) < 0.0:
+            return "pulse, one-way, decaying"
+        levels = levels_of_pulse
     return final_regime(
         *levels,
         gamma=run.gamma,
@@ -51,13 +55,13 @@ def _regime(run: Run, still_fraction: float) -> str:
     )
 
 
-def _levels_of_long_pulse(run: Run) -> tuple[float, float] | None:
-    """Return the levels that decide the final regime of a run whose pre-stress has steps.
+def _levels_around_pulse(run: Run) -> tuple[float, float] | None:
+    """Return the levels behind and ahead of a pulse that has passed all steps of the pre-stress.
 
-    They are the level behind a pulse that runs towards the steps, and the level beyond the last
-    step. The result is None if there is no such pulse, or if it may not reach the last step. Under
-    a stress boundary, a pulse runs away from a negative level, into the level 0. Before the last
-    step, only a negative level could stop it.
+    These two levels decide the final regime. Such a pulse is certain only under a stress boundary
+    if one side is negative and the other is 0: the pulse then runs away from the negative level,
+    into the level 0. Before the last step, only a negative level could stop it. The result is None
+    in all other cases.
     """
     profile = run.prestress
     level_behind = min(profile.left, profile.right)

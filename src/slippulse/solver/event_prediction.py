@@ -314,8 +314,8 @@ def predict_sticks(motion, prediction, first, last, may_stick_count, now, step_e
     coefficients = prediction.coefficients
     for i in range(first, last):
         # A block may stick if its velocity is negative at the end of the step. If it is negative
-        # only in between, it curves upwards, and its tangent at the start of the step is negative
-        # at the end.
+        # only in between, it curves upwards and lies above its tangent at the start of the step, so
+        # that this tangent is negative at the end.
         tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
         if end_velocity[i] >= 0.0 and tangent_at_end >= 0.0:
             continue
@@ -381,9 +381,9 @@ def predict_law_kinks(motion, law_kink, prediction, first, last, now, step_end, 
                 # Slip only grows, so that it does not come back to the kink.
                 is_out_of_reach = not is_before_kink
             else:
-                # A slip rate that reaches the kink is beyond the kink at the end of the step. If it
-                # has turned back until then, its tangent at the start of the step is beyond at the
-                # end.
+                # A slip rate that reaches the kink has either passed it at the end of the step, or
+                # has turned back before. A curve that turns back bends away from its tangent at the
+                # start of the step, so that this tangent is beyond the kink at the end.
                 tangent_at_end = w[VELOCITY, i] + step_end * w[ACCELERATION, i]
                 largest = max(sign * motion.end_velocity[i], sign * tangent_at_end)
                 is_out_of_reach = largest < sign * law_kink.argument_at_kink

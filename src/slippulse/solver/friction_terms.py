@@ -64,18 +64,22 @@ def friction_constants(friction: Friction, localised: bool) -> FrictionConstants
 def begin_weakening(motion, law_kink, block):
     """Start the weakening of a block that is released, and return its friction.
 
+    The argument of the law is the slip since the release or the slip rate. Row ``argument_row`` of
+    the time derivatives of slip is SLIP for the first kind of law, and VELOCITY for the second.
+
     law_kink : constants of a piecewise linear law; None for other laws, which need no start
     """
     if law_kink is not None:
-        # The factor is 0 in the zone of nucleation, which has no friction, and 1 elsewhere.
+        # The factor is 1, except in the zone of nucleation, where it is 0. Only slip weakening has
+        # such a zone. Its friction beyond the kink is 0, so that with the slope 0 it is 0 always.
         weakening_slope = motion.law_factor[block] * law_kink.weakening_slope
         motion.weakening_slope[block] = weakening_slope
         if law_kink.argument_row == SLIP:
             # The slip at the start of the step, plus the slip by earlier events of the step.
             slip = motion.derivatives[SLIP, block] + motion.event_slip[block]
             motion.slip_at_release[block] = slip
-        # The argument of the law, the slip since the release or the slip rate, is 0 now. From here
-        # to the kink, friction falls to its value beyond the kink.
+        # The argument of the law is 0 now. From here to the kink, friction falls to its value
+        # beyond the kink.
         return law_kink.friction_beyond + weakening_slope * law_kink.argument_at_kink
     return 0.0
 
@@ -111,8 +115,8 @@ def friction_at_stick(motion, law_kink, block):
 def switch_weakening(motion, law_kink, block):
     """Stop the weakening of a block that passes the kink, or start it again on the way back."""
     if law_kink is not None:
-        # The slope of the block is either 0 or that of the law, and takes the other value. (Where a
-        # law has no friction, blocks have no kink.)
+        # The slope of the block is either 0 or that of the law, and takes the other value. (In the
+        # zone of nucleation, where slip weakening has no friction, blocks have no kink.)
         motion.weakening_slope[block] = law_kink.weakening_slope - motion.weakening_slope[block]
 
 

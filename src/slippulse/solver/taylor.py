@@ -221,8 +221,11 @@ def loss_of_step(h, dissipation, slope, slope_changes):
 def complete_losses(medium, motion, segments, tally):
     """Complete the energy losses of the previous step, and return the present dissipation.
 
-    Of the losses of that step, `add_losses` has left out h/3 times the dissipation at its end,
-    which is now. Here h is the length of that step, ``pending_step``.
+    The losses of a step of length h contain h/3 times the dissipation at its end (this formula is
+    in `loss_of_step`). `add_losses` could not add this part, because the dissipation at the end was
+    not known yet. The previous step has ended now, so the present dissipation is the missing one,
+    and h is ``pending_step``. The present slopes are returned because the losses of the next step
+    need them.
     """
     viscous, viscous_slope = 0.0, 0.0
     if medium.beta > 0.0 or medium.alpha != 0.0:
@@ -419,7 +422,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
     moved, step_events = scratch.moved, scratch.step_events
     fastest = 0.0
     # Advance the slip by the Taylor polynomials, and set the velocity to that at the end of the
-    # step.
+    # step. `advance_slip` also writes the change of slip into the row SLIP_INCREMENT.
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]
         stencils.advance_slip(w, motion.end_velocity, first, last, h, order)
@@ -435,7 +438,7 @@ def finish_step(medium, motion, scratch, tally, order, h):
             event_slip[i] = 0.0
     # The strain of a block, (u_{i+1} - u_i)/dx, also changes in the block before a segment. On a
     # mirrored lattice, the block before block 1 has the strain of a mirror image, which is set
-    # below.
+    # below. (UNSIGNED_ONE is 1. The block numbers of `block_range` are unsigned integers.)
     first_bond = 1 if medium.is_mirrored else 0
     for r in range(moved.count.n):
         first, last = moved.edges[2 * r], moved.edges[2 * r + 1]

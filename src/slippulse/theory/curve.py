@@ -19,6 +19,11 @@ through (y, t) meet the curve (`Curve.crossings`):
 
 At x_l, T - x rises to xi = t - y, going left from y. At x_r, T + x rises to eta = t + y, going
 right.
+
+A restart is a position where a slow front became faster than the waves again, or where a slow front
+met another front. T + x has a maximum at each restart of a left front, and T - x at each restart of
+a right front. So a characteristic may have several crossings with the curve, of which only the one
+nearest to its point counts.
 """
 
 from collections.abc import Sequence
@@ -321,7 +326,8 @@ class Curve:
         """Levels from which `crossings` finds the panel on which a characteristic meets the curve.
 
         A characteristic that is traced to the right meets the curve where T + x rises to its value
-        eta for the last time. From there on T + x is not below eta. So the crossing is on the first
+        eta for the last time in its region. From there to the end of the region T + x is not below
+        eta. So the crossing is on the first
         panel for which T + x is at least eta at the right ends of this panel and of all panels
         beyond it. To find this panel, the lowest T + x at these ends is computed for each panel.
         These levels are in ascending order, and can be searched by bisection. For a characteristic
@@ -446,10 +452,15 @@ def _panels_of_crossings(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return, for each point, the panel on which its characteristic to the right meets the curve.
 
-    There T + x rises to its value at the point (level). Regions, the parts of the curve between
-    restarts, are searched from that of the point to the right. In the first region in which T + x
-    reaches the level, it is the panel on which T + x rises to the level for the last time. Also
-    return a mask that is False for points without a panel; for these the last panel is returned.
+    T + x rises to the level t + y of the point there. The curve is divided into regions at the
+    restarts of its left fronts, where T + x has a maximum (see the top of this module). In each
+    region T + x first falls, where the left front is slow, and then rises. The first region in
+    which it rises to the level counts, but none on the left of the point. At the beginning of this
+    region T + x may also be above the level, but then it falls below it. So the panel is the one on
+    which T + x rises to the level for the last time.
+
+    Also return a mask that is False for points without a panel; for these the last panel is
+    returned.
 
     edges : ends of the panels
     lowest_levels : for each region and each of its panels, the lowest T + x at the right ends of

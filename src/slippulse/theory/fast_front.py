@@ -121,9 +121,9 @@ class FastFront:
     def marks(self) -> list[float]:
         """Positions from which waves come, because the motion of the front changes there.
 
-        These are the positions where two pieces meet, which are intervals of smooth pre-stress
-        either above or below 0. Only the kinks of a table of points are left out: the pre-stress is
-        continuous there, and has the same sign on both sides.
+        A piece is an interval on which the pre-stress is smooth, and either above or below 0. The
+        marks are the positions where two pieces meet. Only the kinks of a table of points are left
+        out: the pre-stress is continuous there, and has the same sign on both sides.
         """
         marks = []
         for piece, next_piece in pairwise(self.pieces):

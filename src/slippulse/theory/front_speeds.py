@@ -95,8 +95,9 @@ def front_speed(tau0, damping_ratio, release: str = "total"):
     tau, damping_ratio = broadcast_numbers(tau0=tau0, damping_ratio=damping_ratio)
     speeds = np.array(front_speed_undamped(tau))
     is_damped = damping_ratio > 0.0
-    # Next to tau_0 = 1 the speed is expanded in 1/v. Under rule "elastic" this holds only for
-    # fronts that are much faster than the damping ratio.
+    # Next to tau_0 = 1 fronts are so fast that an expansion of ln tau_0 in 1/v gives the speed v.
+    # Under rule "elastic" this holds only if v is much larger than the damping ratio. Next to
+    # tau_0 = 1, v = 1/sqrt(2 (1 - tau_0)) is above 2e6, so that a ratio below 1e3 is small.
     may_be_expanded = (release == "total") | (damping_ratio < 1e3)
     is_expanded = is_damped & (1.0 - tau < NEARLY_ONE_DISTANCE[release]) & may_be_expanded
     speeds[is_expanded] = 1.0 / slowness_nearly_one(
@@ -125,7 +126,8 @@ def prestress_for_speed(speed, damping_ratio, release: str = "total"):
 
     Parameters
     ----------
-    speed, damping_ratio : floats or arrays, broadcast: wave speeds, from 1 to 1e100, and beta/dx
+    speed, damping_ratio : floats or arrays, broadcast: front speed (wave speeds), from 1 to 1e100,
+        and beta/dx
     release : "total" or "elastic", as in `front_speed`
 
     Returns
@@ -179,17 +181,20 @@ def log_prestress_in_chunks(
 def first_guess(tau: np.ndarray, damping_ratio: np.ndarray, release: str) -> np.ndarray:
     """Return an estimate of ln(v - 1), with which the search for the front speed v starts.
 
-    The estimate is interpolated between weak and strong damping, for which the speed has a simple
-    formula.
+    Without damping and with strong damping, the speed has a simple formula. In between, the
+    estimate is interpolated under rule "total". Under rule "elastic", it is one of these formulas
+    with a fitted correction, depending on the damping ratio.
     """
     b, distance_to_1 = damping_ratio, 1.0 - tau
     # Without damping v = 1/sqrt(1 - tau^2), so that v - 1 = tau^2/(1 - tau^2 + sqrt(1 - tau^2)).
     one_minus_square = distance_to_1 * (1.0 + tau)
     undamped = np.log(tau) * 2.0 - np.log(one_minus_square + np.sqrt(one_minus_square))
     if release == "elastic":
-        # With strong damping v = 1/sqrt(1 - tau). The terms with b are fitted.
+        # With strong damping v = 1/sqrt(1 - tau). The terms with b are fitted corrections.
         strongly_damped = np.log(tau) - np.log(distance_to_1 + np.sqrt(distance_to_1))
-        return np.where(b < 0.2, undamped + 0.5 * b, strongly_damped - 1.0 / (1.0 + 2.0 * b))
+        with_weak_damping = undamped + 0.5 * b
+        with_strong_damping = strongly_damped - 1.0 / (1.0 + 2.0 * b)
+        return np.where(b < 0.2, with_weak_damping, with_strong_damping)
     # Under rule "total", v - 1 = tau/(1 - tau) at b = 1. Beyond, it grows in proportion to b.
     damped = np.log(tau / distance_to_1) + np.log(np.maximum(b, 1.0))
     weight = np.minimum(b, 1.0)

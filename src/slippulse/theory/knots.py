@@ -32,9 +32,9 @@ class Knots(NamedTuple):
     Interval k lies between the knots k and k + 1. Arguments k of the methods are arrays of such
     numbers.
 
-    stick is the stick time, or the final time if the block still slides then. kind is one of the
-    four kinds above. velocity is du/dt at the time stick. The last two are its derivatives by
-    xi = t - x and by eta = t + x.
+    stick is the stick time, or the final time if the block still slides then. kind is SLIDING,
+    FASTER_THAN_WAVES, SLOWER_THAN_WAVES or BRIEF_SLIP. velocity is du/dt at the time stick. The
+    last two are its derivatives by xi = t - x and by eta = t + x.
     """
 
     x: np.ndarray
@@ -128,14 +128,15 @@ class Knots(NamedTuple):
         return jumps | turns_slow
 
     def ends_before_jumps(self, k: np.ndarray) -> np.ndarray:
-        """Return, for each interval k in which the edge jumps, the number of the knot before it.
+        """Return the knot from which the edge jumps, for each interval k with a jump (`has_jump`).
 
-        The knot before the jump is the end of the interval that the edge reaches faster than the
-        waves.
+        "Before" refers to time: the edge runs to this knot faster than the waves, and arrives at
+        the other knot of the interval later. The knot is given by its number, k or k + 1.
         """
         left_kind, right_kind = self.kind[k], self.kind[k + 1]
-        # If both knots are of one kind, the knot that sticks first is before the jump. Otherwise
-        # the one of the kind FASTER_THAN_WAVES is.
+        # If both knots are of one kind, the edge jumps from the one that sticks first. Otherwise it
+        # jumps from the knot of the kind FASTER_THAN_WAVES: at the other knot the edge has become
+        # slower than the waves, or the block still slides.
         right_sticks_first = self.stick[k] >= self.stick[k + 1]
         is_right_knot = np.where(
             left_kind == right_kind, right_sticks_first, right_kind == FASTER_THAN_WAVES

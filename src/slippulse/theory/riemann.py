@@ -244,9 +244,10 @@ class DependenceDomains:
                 [source_times_slope * nodes.eta_minus_h, source_times_slope * nodes.xi_minus_g]
             )
 
-        by_kernel_with_xi, by_kernel_with_eta = self._integrate(kernel_terms, component_shape=(2,))
-        by_xi = 0.5 * (k * by_kernel_with_xi - at_left_end) - by_decay
-        by_eta = 0.5 * (k * by_kernel_with_eta + at_right_end) - by_decay
+        # The two integrals with K', each named after its factor (eta - h) or (xi - g).
+        with_eta_minus_h, with_xi_minus_g = self._integrate(kernel_terms, component_shape=(2,))
+        by_xi = 0.5 * (k * with_eta_minus_h - at_left_end) - by_decay
+        by_eta = 0.5 * (k * with_xi_minus_g + at_right_end) - by_decay
         return by_xi, by_eta
 
     def _source_by_field(
@@ -289,7 +290,9 @@ class DependenceDomains:
             factor_of_slope -= nodes.xi_minus_g * (k * p * dh_ds)
             return kernel * factor_of_kernel + kernel_slope * factor_of_slope
 
-        return self._minus_mean_of_ends(static_solution, order=0) + 0.5 * self._integrate(braces)
+        # The first line of the formula, divided by 2. Order 0 means p itself.
+        first_line = self._p_minus_mean_at_ends(static_solution, order=0)
+        return first_line + 0.5 * self._integrate(braces)
 
     def strain(self, static_solution: StaticSolution) -> np.ndarray:
         """Return the strain du/dx at the points (y, t).
@@ -312,8 +315,9 @@ class DependenceDomains:
         the square bracket is dg + dh, and E does not depend on y.
         """
         k, alpha = self.stiffness, self.alpha
-        # The first line of the formula, divided by 2. Each further term has a factor k or alpha.
-        strain = self._minus_mean_of_ends(static_solution, order=1)
+        # The first line of the formula, divided by 2. Order 1 means dp/dx. Each further term has a
+        # factor k or alpha.
+        strain = self._p_minus_mean_at_ends(static_solution, order=1)
         if k == alpha == 0.0:
             return strain
 
@@ -347,8 +351,8 @@ class DependenceDomains:
         strain += terms_with_k - 0.25 * alpha * (p_right - p_left)
         return strain + 0.5 * self._integrate(derivative_of_braces)
 
-    def _minus_mean_of_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
-        """Return p(y) - [E p(x_l) + E p(x_r)]/2, or the same of dp/dx (order 1), for all points.
+    def _p_minus_mean_at_ends(self, static_solution: StaticSolution, order: int) -> np.ndarray:
+        """Return p(y) - [E p(x_l) + E p(x_r)]/2 (order 0), or the same with dp/dx (order 1).
 
         p is the static solution, E the decay factor, and x_l and x_r are the ends of the integral.
         """

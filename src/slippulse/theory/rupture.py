@@ -103,7 +103,7 @@ class Rupture(ExplainsRemovedNames):
         rate_strengthening: float = 0.0,
     ) -> None:
         check_domains(duration=duration)
-        self.law = FastFront(
+        self._fast_front = FastFront(
             prestress=prestress,
             gamma=gamma,
             damping_ratio=damping_ratio,
@@ -114,19 +114,21 @@ class Rupture(ExplainsRemovedNames):
         # With a larger alpha, exponentials such as exp(alpha t) could overflow before the duration.
         check_number("rate_strengthening", rate_strengthening, at_most=MAX_DECAY / duration)
         self.prestress = prestress
-        self.gamma = self.law.gamma
+        self.gamma = self._fast_front.gamma
         self.duration = float(duration)
         # A later time than this is beyond the duration, apart from rounding.
         self._latest_time = self.duration * (1.0 + EQUALITY_TOLERANCE)
         # The construction goes a little beyond the duration.
         until = self.duration * (1.0 + EXTRA_DURATION)
-        # A stretch has the two fronts of one connected part of the rupture. From the unknown points
-        # on, a front could not be followed. They are given with the reasons.
-        self.stretches, self._unknown_points = spread(self.law, until)
+        # A stretch has the two fronts of one connected part of the rupture. The unknown points are
+        # those beyond which a front could not be followed, each with the reason.
+        self.stretches, self._unknown_points = spread(self._fast_front, until)
+        # A part adds the motion behind these two fronts.
         self._parts = [self._make_part(stretch, until) for stretch in self.stretches]
         self._solved_parts = self._parts
         if prestress.symmetric:
-            # A symmetric scene is computed at x >= 0 only, so parts on the left are not solved.
+            # A symmetric scene is computed at x >= 0 only. A part on the left, whose right end (the
+            # last panel edge) is at x <= 0, is not solved.
             self._solved_parts = [part for part in self._parts if part.curve.edges[-1] > 0.0]
 
     def _make_part(self, stretch: Stretch, until: float) -> SolvedPart:
@@ -136,8 +138,8 @@ class Rupture(ExplainsRemovedNames):
         nucleation point of most scenes, x = 0, changes of the pre-stress, points where a slow front
         became fast again (restarts) or where two fronts met (joins), and the ends of both fronts.
         """
-        curve, law = stretch.curve(), self.law
-        changes_of_prestress = [*law.marks, *law.narrow_features]
+        curve, fast_front = stretch.curve(), self._fast_front
+        changes_of_prestress = [*fast_front.marks, *fast_front.narrow_features]
         restarts = [*stretch.restarts[LEFT], *stretch.restarts[RIGHT]]
         ends = [stretch.ends[LEFT].x, stretch.ends[RIGHT].x]
         marks = np.unique([0.0, *changes_of_prestress, *restarts, *stretch.joins, *ends])
@@ -146,9 +148,9 @@ class Rupture(ExplainsRemovedNames):
             gamma=self.gamma,
             until=until,
             marks=marks[curve.covers(marks)],
-            refinement=law.refinement,
+            refinement=fast_front.refinement,
             one_side=self.prestress.symmetric,
-            alpha=law.alpha,
+            alpha=fast_front.alpha,
         )
 
     @property
@@ -278,15 +280,15 @@ class Rupture(ExplainsRemovedNames):
     def first_stick(self) -> FirstStick | None:
         """Time and position of the first sticking; None if nothing is known to stick.
 
-        So it is None if nothing sticks before ``duration``, or not before ``limit``.
+        It is None if nothing sticks before ``duration``. It is also None if the first known
+        sticking is later than ``limit``, the earliest point from which on the construction is not
+        valid, because another position may have stuck before it.
         """
         first_of_parts = [part.first_stick() for part in self._solved_parts]
         # The earliest one. The result is None for a part in which nothing sticks.
         first = min(filter(None, first_of_parts), default=None)
         if first is None or first.time > self._latest_time:
             return None
-        # After the earliest limit of the construction, parts of the rupture are unknown. Another
-        # position may have stuck there before this one.
         if self.limit and first.time > self.limit.time * (1.0 + EQUALITY_TOLERANCE):
             return None
         return FirstStick(min(first.time, self.duration), first.x)

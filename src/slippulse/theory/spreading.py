@@ -35,6 +35,7 @@ REASONS_UNKNOWN = {
 REASON_OVERRUN = "a front arrives where another one has stopped"
 # Reasons of `SlowFront.next_panel` for which a front is not followed further.
 END_REASONS = ("stops", *REASONS_UNKNOWN)
+# The two sides. Multiplied by its side, the position of a front increases while the front runs.
 LEFT, RIGHT = SIDES = (-1.0, 1.0)
 # Where two fronts meet, the speed of each is judged over this last distance. At the wave speed, 1,
 # a front takes a time of the same size for it; a slow front takes longer.
@@ -179,11 +180,14 @@ def _cut_overrunning_fronts(stretches: list[Stretch]) -> list[tuple[Point, str]]
         # First the left front of the right stretch may have run over the end of the left stretch.
         # Then the right front of the left stretch may have run over the end of the right stretch.
         for arriving, side, neighbour in ((right, LEFT, left), (left, RIGHT, right)):
-            # The front of the neighbour runs to the opposite side.
+            # The front of the neighbour is on its opposite side (LEFT = -1, RIGHT = +1).
             x = neighbour.ends[-side].x
+            has_passed = side * arriving.ends[side].x > side * x
             # A stretch without panels is a single point, which has not run anywhere.
-            if arriving.panels and side * arriving.ends[side].x > side * x:
+            if arriving.panels and has_passed:
                 arriving.cut(side, x)
+                # Up to this point the front is known, and it ends because it has met another one.
+                # What happens after the meeting is unknown, for the reason REASON_OVERRUN.
                 arriving.end_reason[side] = "met"
                 unknown.append((arriving.ends[side], REASON_OVERRUN))
     return unknown
@@ -216,26 +220,33 @@ def _nucleate(fast_front: FastFront) -> list[Stretch]:
 def _advance_fast_front(fast_front: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Advance the front on one side of a stretch while it is faster than the waves.
 
-    The front runs at most up to the next nucleation point, or until a time. fast_front belongs to
-    the pre-stress with this side turned to the right: for the left side it is mirrored at x = 0.
+    The front runs at most up to the next nucleation point, or until a time.
+
+    fast_front : the law of motion for the pre-stress with this side turned to the right, so that
+        for the left side it is mirrored at x = 0
     """
-    start, stop = stretch.ends[side], stretch.next_start[side]
-    panels, end = fast_front.panels_to_right(Point(side * start.x, start.time), stop, until)
+    # With this side turned to the right, the front runs from the point start to the position stop.
+    # The points in ``ends`` are not turned, but the positions in ``next_start`` are.
+    known_end = stretch.ends[side]
+    start, stop = Point(side * known_end.x, known_end.time), stretch.next_start[side]
+    panels, end = fast_front.panels_to_right(start, stop, until)
     if panels:
         stretch.add(side, panels, end)
-    # A front that ends for another reason has reached negative pre-stress, and is slow from now on.
     if end.time >= until:
         stretch.end_reason[side] = "duration"
     elif end.x >= stop:
         stretch.end_reason[side] = "met"
+    # Otherwise the front has reached negative pre-stress. It is slow from now on.
 
 
 def _advance_slow_front(fast_front: FastFront, stretch: Stretch, side: float, until: float) -> None:
     """Add one panel to the slow front on one side of a stretch.
 
     If the front is not followed further, the reason is recorded. If it reaches positive pre-stress,
-    it continues as a fast front until a time. fast_front belongs to the pre-stress with this side
-    turned to the right: for the left side it is mirrored at x = 0. So the front runs right.
+    it continues as a fast front until a time.
+
+    fast_front : as for `_advance_fast_front`, with this side turned to the right, so that the front
+        runs to the right
     """
     piece = fast_front.piece_right_of(side * stretch.ends[side].x)
     # The front is slow up to this position at most: the end of the piece of negative pre-stress, or

@@ -106,8 +106,9 @@ class StickSearch:
 
         release has the time of the release of each position. wave_arrivals has the times at which
         waves arrive, with a row for each position, NaN for a wave that never arrives. The times of
-        a position are sorted, and repeat the final time at the end, so that all rows are equally
-        long and can be divided into batches of BATCH_SIZE samples.
+        a position are sorted. Each row ends with the final time, which it repeats if fewer samples
+        are needed than in other rows. `find_stick_times` takes BATCH_SIZE columns at a time, and
+        the remaining columns as the last batch.
         """
         longest = self.until - np.min(release, initial=self.until)
         sample_count = release.size * (longest / self.step + BATCH_SIZE + wave_arrivals.shape[1])
@@ -122,7 +123,8 @@ class StickSearch:
         final_times = np.full((release.size, BATCH_SIZE), self.until)
         times = np.concatenate([release[:, None] + steps, wave_arrivals, final_times], axis=1)
         # Right after the release du/dt is 0 apart from rounding, so that no sample is taken there.
-        # A wave that never arrives (NaN) is left out as well, because NaN is not late enough.
+        # A wave that never arrives (NaN) is left out as well, because NaN is not late enough. The
+        # final time takes the place of these samples, and of those after it.
         is_late_enough = times > release[:, None] + FIRST_SAMPLE * self.step
         times[~is_late_enough] = self.until
         np.minimum(times, self.until, out=times)

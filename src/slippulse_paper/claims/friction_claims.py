@@ -1,7 +1,7 @@
 """Judge claims about other friction laws, and about the lattice of Burridge and Knopoff.
 
 Each function takes the evidence and the id of its claim, and returns the result. A result with
-``condition=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. The
+``has_caveat=True`` gives the verdict "reproduced with caveat" if the claim holds in all runs. The
 `further` numbers of the result are shown in the table of claims, and sentences quote its
 `template_values`.
 """
@@ -44,7 +44,7 @@ def burridge_knopoff_pulses(evidence: Evidence, id: str) -> Qualitative:
     decided = [None if pulses.empty else True for pulses in (two_way, one_way)]
     return Qualitative(
         decided=decided,
-        condition=is_wide,
+        has_caveat=is_wide,
         further={
             "fewest blocks that slide at once, with leaf springs": fewest_blocks,
             "most blocks that slide at once, with leaf springs": most_blocks,
@@ -83,7 +83,7 @@ def pulses_for_many_friction_laws(evidence: Evidence, id: str) -> Qualitative:
     stopped = len(other_laws) - len(ruptures)
     further["runs left out, because the fracture energy stops the rupture"] = float(stopped)
     # The caveat is that only some friction laws were tested.
-    return Qualitative(decided=regimes != "crack", condition=True, further=further)
+    return Qualitative(decided=regimes != "crack", has_caveat=True, further=further)
 
 
 def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
@@ -109,7 +109,7 @@ def stress_pulse_other_laws(evidence: Evidence, id: str) -> Qualitative:
     # The caveat is that only one friction law was tested.
     return Qualitative(
         decided=agreed_answers(finest, coarsest),
-        condition=True,
+        has_caveat=True,
         further={words: steady_count},
     )
 
@@ -141,7 +141,7 @@ def other_laws_change_pulses(evidence: Evidence, id: str) -> Qualitative:
     # tested.
     return Qualitative(
         decided=is_changed.to_numpy().ravel(),
-        condition=True,
+        has_caveat=True,
         further=further,
         template_values=speeds_under_slip_weakening(evidence),
     )

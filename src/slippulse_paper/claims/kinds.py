@@ -114,11 +114,11 @@ class Qualitative(Claim):
 
     decided : one value for each run: True if the statement holds, False if it fails, and None if
         the run does not decide
-    condition : True if the statement holds only under a condition that the paper does not state
+    has_caveat : True if the statement holds only under a condition that the paper does not state
     """
 
     decided: Collection[bool | None]
-    condition: bool = False
+    has_caveat: bool = False
 
     def counts(self) -> dict[str, int]:
         """Return the numbers of runs in which the statement holds, fails or stays undecided."""
@@ -130,7 +130,7 @@ class Qualitative(Claim):
     def own_verdict(self, tolerance: float) -> str:
         """Return the verdict from the numbers of runs; the tolerance has no influence.
 
-        If the claim holds, it has a caveat if a few runs are undecided, or if it needs a condition.
+        If the claim holds, it has a caveat with ``has_caveat``, or if a few runs are undecided.
         """
         counts, run_count = self.counts(), len(self.decided)
         if not run_count:
@@ -139,7 +139,7 @@ class Qualitative(Claim):
             return rules.FAILED
         if counts["undecided"] > MAX_UNDECIDED_FRACTION * run_count:
             return rules.INCONCLUSIVE
-        return rules.CAVEAT if counts["undecided"] or self.condition else rules.REPRODUCED
+        return rules.CAVEAT if counts["undecided"] or self.has_caveat else rules.REPRODUCED
 
     def fields(self) -> dict[str, Any]:
         """Return the numbers of runs; the deviation is the fraction of runs that fail."""

@@ -3,9 +3,10 @@
 The table `layer` has one row for each run, grid and station. A station is a position on the fault
 at which the pulse is measured. Every run was repeated on several grids, and the finest one counts.
 The column part names a group of runs; `studies.layer.table` describes all of them. The part far has
-the same pulses as the part pulse, farther away and on two grids. A function that judges a claim
+pulses of the part pulse, and one of the part step, followed farther. A function that judges a claim
 takes the evidence and the id of the claim, and returns the result. The `further` numbers of the
-result are shown in the table of claims, and sentences quote its `template_values`.
+result are shown in the table of claims, and sentences quote its `template_values`. With
+``has_caveat``, the verdict is at most "reproduced with caveat".
 """
 
 from collections.abc import Callable
@@ -341,16 +342,18 @@ def numbers_on_splits(evidence: Evidence, tolerance: float) -> dict[str, float]:
 
 
 def split_of_step_pulse(step: pd.DataFrame) -> dict[str, float]:
-    """Return numbers on the split of the one pulse of the part far that belongs to the part step.
+    """Return numbers on how the pulse of the part step splits, which the part far follows farther.
 
-    The result contains these numbers:
+    All other pulses of the part far are those of the part pulse. The result contains these numbers:
 
     step_energy : its fracture energy
     step_split : position at which it splits on its finest grid
     step_only_on_finest : 1 if it splits on no other grid, and 0 otherwise
 
-    step : the row of this pulse in `followed_pulses`
+    step : the rows of `followed_pulses` with this pulse: one row, or none if the pulse was not
+        followed farther
     """
+    # The minimum of one value is this value. It is NaN if there is no row.
     return {
         "step_energy": float(step["fracture_energy"].min()),
         "step_split": float(step["split_at"].min()),
@@ -488,11 +491,11 @@ def layer_width(evidence: Evidence, id: str) -> Approximate:
 def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     """Judge whether pulses are steady if the fracture energy is below the released energy.
 
-    Each point of the map in `layer_map` below this limit counts as one run. Fracture energies are
-    divided by the largest energy that the layer can release, so the limit is 1. Above the limit no
-    pulse can exist. An outcome counts if two grids agree on it. The claim has a caveat if a pulse
-    that enters a very different pre-stress has not become steady at the last station, or if pulses
-    of a point split farther away (see `map_numbers`).
+    Fracture energies are divided by the largest energy that the layer can release. So no pulse can
+    exist above 1, and each point of the map in `layer_map` below 1 counts as one run. An outcome
+    counts if two grids agree on it. The claim has a caveat if a pulse that enters a very different
+    pre-stress has not become steady at the last station, or if pulses of a point split farther away
+    (see `map_numbers`).
     """
     points = evidence.tables["layer_map"]
     agrees = points["outcome"] == points["coarse_outcome"]
@@ -510,7 +513,7 @@ def layer_stability(evidence: Evidence, id: str) -> Qualitative:
     template_values["has_settled"] = has_settled
     return Qualitative(
         decided=decided,
-        condition=not has_settled or on_map["splitting_points"] > 0.0,
+        has_caveat=not has_settled or on_map["splitting_points"] > 0.0,
         further=points_by_outcome(points),
         template_values=template_values,
     )

@@ -42,7 +42,7 @@ class Entry(SimpleNamespace):
 
     def compared_text(self) -> str:
         """Return the deviation and the tolerance in words."""
-        return MISSING if self.deviation is None else self._deviation_and_tolerance()
+        return MISSING if self.deviation is None else self._deviation_or_requirement()
 
     def why_text(self) -> str:
         """Return the reason for the verdict; empty if the claim holds without reservation."""
@@ -103,7 +103,7 @@ class Entry(SimpleNamespace):
         """Return True except for deviations of exponents, and for those from 0."""
         return self.kind != "scaling" and bool(self.predicted)
 
-    def _deviation_and_tolerance(self) -> str:
+    def _deviation_or_requirement(self) -> str:
         """Return the deviation and the tolerance, for a claim that has a deviation."""
         if not self._has_relative_deviation():
             return f"{number(self.deviation, 2)}, tolerance {setting(self.tolerance)}"
@@ -165,15 +165,16 @@ class QualitativeEntry(Entry):
             parts.append(f"{self.undecided} undecided")
         return ", ".join(parts)
 
-    def _deviation_and_tolerance(self) -> str:
+    def _deviation_or_requirement(self) -> str:
         """Return the requirement of the claim (asked), with its tolerance if it has one."""
         text = self.asked or "no run may contradict"
         tolerance = setting(100.0 * self.tolerance)
         return f"{text} (tolerance {tolerance} %)" if self.tolerance else text
 
     def _sentence_on_deviation(self) -> str:
-        """Return the reason why the verdict has a reservation: some runs, or else a condition.
+        """Return a sentence with the reason why the verdict has a reservation.
 
+        In some runs the claim does not hold or is undecided, or it holds only under a condition.
         This function is called only for such verdicts.
         """
         # The text is, for example, "38 of 40, 1 against, 1 undecided".
@@ -196,7 +197,7 @@ class ReadingEntry(Entry):
         """Return the chi-square."""
         return f"\N{GREEK SMALL LETTER CHI}² = {number(self.measured, 3)}"
 
-    def _deviation_and_tolerance(self) -> str:
+    def _deviation_or_requirement(self) -> str:
         """Return the p-value and its smallest allowed value."""
         return f"p = {number(self.deviation, 2)}, required at least {setting(self.tolerance)}"
 

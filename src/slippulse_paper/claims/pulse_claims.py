@@ -146,9 +146,10 @@ def growth_signs(table: pd.DataFrame) -> dict[str, pd.Series]:
 
 
 def front_speed_moderate_gamma(evidence: Evidence, id: str) -> Approximate:
-    """Compare the front speed without damping, for gamma from 0.1 to 1, with the formula.
+    """Compare the front speed without damping, for gamma from 0.1 to 1, with the paper's formula.
 
-    The claim front_speed is about the limit of a small gamma.
+    The formula is v = 1/sqrt(1 - tau_0^2). Another claim, front_speed, is about the limit of small
+    gamma. Here the runs of two simulations are judged together.
     """
     where = f"{WITHOUT_DAMPING} and 0.1 <= gamma <= 1"
     tables = evidence.lattices("speed_against_gamma", "steady_displacement", where=where)

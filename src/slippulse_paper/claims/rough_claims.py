@@ -34,7 +34,7 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
 
     The paper states no limit of the roughness. Ours is that the standard deviation of the
     pre-stress, divided by its level, is at most the tolerance. If pulses die in rougher ensembles,
-    the claim needs this limit as a condition. Each pulse counts as one run.
+    the claim holds only with this limit, and has a caveat. Each pulse counts as one run.
 
     The template values are:
 
@@ -62,7 +62,7 @@ def rough_pulses_go_on(evidence: Evidence, id: str) -> Qualitative:
     }
     return Qualitative(
         decided=[True] * int(alive) + [False] * int(dead),
-        condition=dead_in_rough > 0,
+        has_caveat=dead_in_rough > 0,
         further=further,
         template_values=template_values,
     )

@@ -131,15 +131,16 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
     """Return exact solutions at each combination of the choices that the paper leaves open.
 
     The choices with which we drew figure 5 come first, because claims show the numbers of the first
-    combination.
+    combination. Under a stress boundary there are two more choices: the shape of the nucleation,
+    "Gaussian" or "tent", and the fraction of its path at which the left front counts as arrested.
     """
     # The names of the open choices, and their values in the first run of figure 5.
     open_choices = ["release", "damping_ratio"]
     first_run = evidence.tables[f"scaling_{boundary}"].iloc[0]
     choices_of_figure: Chosen = {name: first_run[name] for name in open_choices}
     if boundary == "stress":
-        # The fraction of the path at which the left front counts as arrested is not a choice of
-        # figure 5. The numbers that claims show are for SHOWN_FRACTION.
+        # The fraction is not a choice of figure 5. The numbers that claims show are for
+        # SHOWN_FRACTION.
         open_choices += ["nucleation", "fraction"]
         choices_of_figure["fraction"] = SHOWN_FRACTION
     table = evidence.tables["open_choices"].query(f"boundary == {boundary!r}")
@@ -150,7 +151,9 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
         # configuration, no run may be left. Claims are then not testable.
         rows = rows.query(NO_BACKWARD_SLIP)
         exact.append(Runs(choice | {"solution": "exact"}, [rows]))
-    # False comes before True, so the choices of figure 5 come first. Otherwise the order is kept.
+    # False comes before True, so the choices of figure 5 come first. Otherwise `sorted` keeps the
+    # order of `groupby`, which is alphabetical. So the Gaussian nucleation of figure 5 comes before
+    # the tent, and claims show its numbers.
     return sorted(exact, key=lambda runs: not choices_of_figure.items() <= runs.choice.items())
 
 
@@ -158,8 +161,8 @@ def exact_runs(evidence: Evidence, boundary: str) -> list[Runs]:
 def transitions(evidence: Evidence) -> list[Runs]:
     """Return runs under a displacement boundary, for both ends of the transition (criteria).
 
-    The transition ends at the first stick, or at the slip by which the paper defines T_trans. Exact
-    solutions are measured at the first stick only.
+    The transition ends at the first stick, or when the slip at x = 0 reaches the value that the
+    paper prints (PRINTED_SLIP). Exact solutions are measured at the first stick only.
     """
     lattices = simulated_runs(evidence, "displacement")
     exact = exact_runs(evidence, "displacement")
@@ -318,13 +321,15 @@ def arrow_of_figure_4(evidence: Evidence, boundary: str, quantity: str) -> dict[
 def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverChoices:
     """Judge the paper's estimate of the transition under a displacement boundary, by both criteria.
 
-    The transition is at the first stick, or when the slip at x = 0 reaches the value by which the
-    paper defines T_trans. Not all runs reach this value, so the claim also shows how many do.
+    The transition is at the first stick, or when the slip at x = 0 reaches 2 tau/gamma, the value
+    that the paper prints. Not all runs reach this slip, so the claim also shows how many do. It
+    shows, too, how much our lattices deviate from exact theory (from_exact), and the length of the
+    arrow in figure 4 divided by the estimate (arrow_ratio).
 
     quantity : "time" or "length"
     """
     judged = judge_estimate(evidence, id, "displacement", quantity)
-    # Count the runs that reach the slip by which the paper defines T_trans.
+    # The printed slip with tau = tau_0, the level of the pre-stress.
     runs = evidence.finest("scaling_displacement")
     at_printed_slip = runs.rename(columns=COLUMNS_BY_CRITERION[PRINTED_SLIP])
     # The ratio is NaN if a run does not reach this slip.
@@ -340,14 +345,15 @@ def displacement_transition(evidence: Evidence, id: str, quantity: str) -> OverC
     template_values = readings_by_name(evidence) | deviations_at_first_stick(judged.combinations)
     template_values |= {
         "of_runs": len(ratio),
+        # Runs that reach the printed slip with tau = tau_0.
         "reach": ratio.count(),
-        # With tau = 1, the pre-stress at the nucleation point, as the paper literally says.
+        # Runs that reach it with tau = 1. This is the pre-stress at x = 0, the point whose slip the
+        # paper uses to define T_trans, so it is what the paper literally says.
         "reach_literally": runs["slip_time_nucleation"].count(),
     }
     return over_choices(
         judged.combinations,
         from_exact=judged.from_exact,
-        # The claim also shows the arrow of figure 4, divided by the estimate.
         further=further | judged.arrow_ratio,
         template_values=template_values,
     )

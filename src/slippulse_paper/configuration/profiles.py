@@ -1,8 +1,9 @@
 """Pre-stress profiles of a configuration.
 
-A profile may name a file, whose points are then read into the configuration. A profile may also
-have a rough background with lists of parameters. Such a profile is expanded into one profile for
-each combination of the parameters. Each expanded profile is converted to a `Prestress`.
+Instead of levels, a profile may have a table, which gives the pre-stress at many positions: points,
+a file with points, or a rough background. The points of a file are read into the configuration. A
+rough background may have lists of parameters. Such a profile is expanded into one profile for each
+combination of the parameters. Each expanded profile is converted to a `Prestress`.
 """
 
 import json
@@ -22,8 +23,8 @@ from slippulse.model.stress_file import read_dimensionless
 
 from .problems import ConfigError
 
-# Keys of a profile that give it a table of pre-stress instead of levels.
-TABLES = frozenset({"points", "file", "rough"})
+# Each of these keys gives a profile a table of the pre-stress instead of levels.
+TABLE_KEYS = frozenset({"points", "file", "rough"})
 # Keys of a rough background that may be lists. The seed may also be a range.
 ROUGH_LISTS = ("level", "deviation", "correlation_length", "hurst", "seed")
 
@@ -145,18 +146,20 @@ def _lists_of(profile: Mapping[str, Any]) -> list[Sequence]:
 
 
 def prestress_of(profile: Mapping[str, Any]) -> Prestress:
-    """Return the pre-stress of one expanded profile."""
-    has_table = any(key in profile for key in TABLES)
+    """Return the pre-stress of one expanded profile, with levels or with a table (TABLE_KEYS).
+
+    A table takes longer to read or to compute, so the results are cached.
+    """
+    has_table = any(key in profile for key in TABLE_KEYS)
     if not has_table:
         return Prestress(**profile)
-    # The results are cached. The cache needs a hashable argument.
     return _prestress_of_table(json.dumps(profile, sort_keys=True))
 
 
 # The profile of each run is needed several times while the workflow is planned.
 @lru_cache(maxsize=512)
 def _prestress_of_table(text: str) -> Prestress:
-    """Return the pre-stress of a profile with a table, from the profile as JSON.
+    """Return the pre-stress of a profile with points or a rough background, given as JSON.
 
     The cache needs a hashable argument, which a dictionary is not.
     """

@@ -160,7 +160,11 @@ def _parse_texts(value: Any, path: tuple[str, ...] = ()) -> Any:
 
 
 def read_overlay(path: str | Path) -> dict[str, Any]:
-    """Read an overlay: a YAML or JSON file with a mapping. Raises ConfigError with its path."""
+    """Read an overlay: a YAML or JSON file with a mapping. Raises ConfigError with its path.
+
+    If a profile of the pre-stress names a file with points, the points are read as well. The path
+    of such a file may be relative to the folder of the overlay.
+    """
     path = Path(path)
     try:
         overlay = _load(_read_text(path))

@@ -11,7 +11,7 @@ from slippulse.model.run import Run
 from slippulse.model.scene import EXTRA_TERMS
 
 from .chunks import runs_of
-from .profiles import TABLES, ExpandedProfiles, labels_of, prestress_of
+from .profiles import TABLE_KEYS, ExpandedProfiles, labels_of, prestress_of
 
 # The value of `right` for which both levels are equal.
 SAME = "same"
@@ -87,7 +87,7 @@ def profile_labels(simulation: Mapping) -> list[dict[str, float]]:
     The list is empty if no profile of the simulation has a table of pre-stress.
     """
     profiles = simulation.get("profiles", [])
-    if not any(TABLES.intersection(profile) for profile in profiles):
+    if not any(TABLE_KEYS.intersection(profile) for profile in profiles):
         return []
     # Put labels in place of the profiles. Each combination then has the label of its profile.
     axes = _axes(simulation) | {"profile": labels_of(ExpandedProfiles(profiles))}

@@ -479,20 +479,25 @@ class Simulation(PhysicsOfSweep):
         return self
 
     def _check_lists_and_units(self) -> None:
-        """Raise ValueError if the pre-stress, spacing or duration is not described in one way."""
+        """Raise ValueError unless pre-stress, spacing and duration are given, in one way each.
+
+        The pre-stress is given by levels or by profiles, the spacing is fixed or follows a rule,
+        and the duration is given in one unit.
+        """
         has_levels = self.left is not None and self.right is not None
-        has_profile = has_levels or self.profiles is not None
-        require(has_profile, "left, right: missing", "lists, or profiles")
-        rule_keys = self.spacing.model_fields_set
-        is_consistent = rule_keys == {"fixed"} or "fixed" not in rule_keys
-        require(is_consistent, "spacing.fixed: given with other keys", "no other key")
+        has_prestress = has_levels or self.profiles is not None
+        require(has_prestress, "left, right: missing", "lists, or profiles")
+        spacing_keys = self.spacing.model_fields_set
+        # A fixed spacing excludes the keys of the rule.
+        is_one_way = "fixed" not in spacing_keys or spacing_keys == {"fixed"}
+        require(is_one_way, "spacing.fixed: given with other keys", "no other key")
         units = sorted(self.duration.model_fields_set)
         require(len(units) == 1, f"duration: {units}", f"{UNITS}; set the other units to null")
         # These two keys use gamma, which is zero if the stress is held.
         if self.boundary == "stress":
             only = "only under boundary 'displacement'"
             require("half_periods" not in units, "duration.half_periods: given", only)
-            require("gamma_power" not in rule_keys, "spacing.gamma_power: given", only)
+            require("gamma_power" not in spacing_keys, "spacing.gamma_power: given", only)
 
     def _check_record(self) -> None:
         """Raise ValueError if fronts are not recorded, or if samples are incomplete."""

@@ -69,7 +69,7 @@ def like_first_run(runs: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
 
 
 def draw(table: pd.DataFrame) -> Figure:
-    """Draw (a to c) each quantity divided by the paper's formula, (d) errors by spacing."""
+    """Draw (a to c) quantities divided by the paper's formula, (d) their errors by spacing."""
     figure, (*quantity_panels, refined_axes) = style.new_panels(PAGE_WIDTH, 4.6, "ab;cd")
     rows_by_role = style.by_role(table)
     gamma = rows_by_role["simulation"]["gamma"].iloc[0]

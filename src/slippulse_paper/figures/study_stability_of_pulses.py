@@ -181,7 +181,7 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
         colour = colours[float(np.sign(level))]
         time, velocity = line["time"], line["largest_velocity"]
         axes.plot(time, velocity, "o-", color=colour, markersize=2.0, linewidth=0.8)
-        label_position = _drawn_end(time.to_numpy(), velocity.to_numpy())
+        label_position = _end_within_panel(time.to_numpy(), velocity.to_numpy())
         axes.annotate(setting(level), label_position, color=BLACK, fontsize=SMALL_TEXT, **look)
     axes.axvline(rows["step"].iloc[0], color=GREY, linewidth=0.6, linestyle=":")
     axes.set(yscale="log", xlabel=r"time $t$", ylabel=r"largest slip velocity, $x > 0$")
@@ -191,11 +191,15 @@ def _draw_velocity(axes: Axes, rows: pd.DataFrame) -> None:
     axes.text(0.97, 0.96, r"$\tau$ beyond", transform=axes.transAxes, ha="right", va="top")
 
 
-def _drawn_end(time: np.ndarray, velocity: np.ndarray) -> tuple[float, float]:
-    """Return the end of a line of the velocity, or just above where it leaves the panel below."""
+def _end_within_panel(time: np.ndarray, velocity: np.ndarray) -> tuple[float, float]:
+    """Return the last point of a velocity curve that lies within the panel.
+
+    If the curve falls below the lowest drawn velocity, it is the point where the curve crosses the
+    lower edge of the panel, moved up a little.
+    """
     if velocity[-1] > MIN_DRAWN_VELOCITY:
         return time[-1], velocity[-1]
-    # The line is straight on the logarithmic axis, so logarithms are interpolated. They fall with
-    # time, but must ascend for interpolation.
+    # The curve is straight between two samples on the logarithmic axis, so logarithms are
+    # interpolated. They fall with time, but must ascend for interpolation.
     exit_time = np.interp(np.log(MIN_DRAWN_VELOCITY), np.log(velocity[::-1]), time[::-1])
     return float(exit_time), 1.15 * MIN_DRAWN_VELOCITY

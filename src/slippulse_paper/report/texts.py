@@ -292,11 +292,12 @@ def answer(lines: Sequence[Line]) -> str:
 
 
 def _clauses(lines: Sequence[Line], words: VerdictWords) -> list[str]:
-    """Return the clauses that report one verdict of some lines.
+    """Return the clauses of the answer that report one verdict, such as "not reproduced".
 
-    Lines with a clause of their own come first. The others share one clause, such as "the width and
-    the slip are different".
+    A line with a clause of its own contributes this clause. All other lines share one more clause,
+    made from their topics (`Line.named`), such as "the width and the slip are different".
 
+    lines : the lines of the summary that have this verdict
     words : the words for the verdict
     """
     clauses = [line.clause for line in lines if line.clause]

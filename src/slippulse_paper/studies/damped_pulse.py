@@ -22,12 +22,13 @@ RELATIVE_DAMPING_RATIOS = np.linspace(0.0, 1.0, 61) ** 2
 def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return one row for each pulse and quantity. The column ``role`` has these values:
 
-    curve : a quantity of a pulse at the spacing of the sweep, divided by the paper's formula
-    limit : a quantity of the pulse in the limit dx -> 0, or its front speed
+    curve : one of QUANTITIES of a pulse at the spacing of the sweep ``pulse_damping``, divided by
+        the paper's formula
+    limit : one of QUANTITIES, or the front speed, of the pulse in the limit dx -> 0, undivided
     """
     swept_runs = [*runs(settings["sweeps"]["pulse_damping"])]
-    # The runs of this sweep are one scene at several spacings, so they have the same limit. If an
-    # overlay adds other scenes, the figure draws only that of the first run.
+    # The runs of ``continuum_fixed_ratio`` are one scene at several spacings, so they have the same
+    # limit. If an overlay adds other scenes, the figure draws only that of the first run.
     first_refined_run = next(runs(settings["sweeps"]["continuum_fixed_ratio"]))
     return pd.DataFrame(curve_rows(swept_runs) + limit_rows(first_refined_run))
 

@@ -53,11 +53,13 @@ MIN_OVERSHOOT = 1.01
 MIN_GROWTH = 1.1
 # Regime of a rupture that stops soon after its nucleation.
 NO_RUPTURE = "no rupture"
-# Front speed as a function of d_c/dx at fixed beta: levels, spacings, and values of d_c/dx.
+# Spacings of the runs that are repeated on finer lattices.
+REFINED_SPACINGS = (0.08, 0.04, 0.02)
+# Front speeds selected by d_c/dx at fixed beta, at each of these spacings: levels, and values
+# of d_c/dx.
 SELECTION_LEVELS = (0.5, 0.8)
-SELECTION_SPACINGS = (0.08, 0.04, 0.02)
 DISTANCES_OVER_DX = (1.0, 2.0, 4.0, 8.0)
-# Cases with exact numbers: level, law, and step divided by dx. Each is run at SELECTION_SPACINGS.
+# Cases with exact numbers: level, law, and step divided by dx. Each is run at REFINED_SPACINGS.
 CASES: tuple[tuple[float, Friction, float], ...] = (
     (0.5, BoundedRate(0.3, 1.0), FINE_STEP_OVER_DX),
     (0.5, RateWeakening(1.5, 0.3), FINE_STEP_OVER_DX),
@@ -73,14 +75,15 @@ def table(data: dict, tables: dict, settings: dict) -> pd.DataFrame:
     """Return the rows of four parts of the figure. The column ``role`` has these values:
 
     plane : runs of all laws at all levels, with the regime of each run
-    selection : front speeds under slip weakening, by spacing and d_c, and the exact front speed
-    case, theory : some runs at several spacings, and their exact numbers
+    selection : front speeds under slip weakening, by the spacing and by d_c, the slip over which
+        friction falls, and the exact front speed
+    case, theory : the runs of CASES at several spacings, and their exact numbers
     """
     # The centre of a pulse counts as at rest below this fraction of the largest velocity.
     still_fraction = settings["measure"]["still"]
     cases = [
         _simulated_row(level, law, dx=dx, step_over_dx=step_over_dx, still_fraction=still_fraction)
-        for (level, law, step_over_dx), dx in product(CASES, SELECTION_SPACINGS)
+        for (level, law, step_over_dx), dx in product(CASES, REFINED_SPACINGS)
     ]
     parts = {
         "plane": _rows_of_all_laws(still_fraction),
@@ -126,7 +129,7 @@ def _rows_by_weakening_distance(still_fraction: float) -> list[dict[str, Any]]:
     """
     rows = []
     for level, dx, distance_over_dx in product(
-        SELECTION_LEVELS, SELECTION_SPACINGS, DISTANCES_OVER_DX
+        SELECTION_LEVELS, REFINED_SPACINGS, DISTANCES_OVER_DX
     ):
         law = SlipWeakening(d_c=distance_over_dx * dx, nucleation=NUCLEATION_HALF_LENGTH)
         exact_speed = np.nan

@@ -99,7 +99,10 @@ def survival_exponent(fates: Sequence[Fate], start: float) -> dict[str, float]:
 
 
 def poisson_interval(count: int) -> tuple[float, float]:
-    """Return the exact confidence interval of a Poisson mean, if ``count`` events were observed."""
+    """Return the exact confidence interval of a Poisson mean, if ``count`` events were observed.
+
+    The level is CONFIDENCE. The formula with quantiles of chi-square is Garwood's (1936).
+    """
     low = 0.0
     if count > 0:
         low = 0.5 * chi2.ppf(PROBABILITY_BEYOND_END, 2 * count)
