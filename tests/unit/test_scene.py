@@ -101,7 +101,9 @@ def test_attributes_without_a_parameter_are_refused_by_its_name():
     strengthened = sp.Scene.from_attributes(attributes | {"rate_strengthening": 0.4})
     assert strengthened.friction == sp.friction("linear_rate", alpha=0.4)
     del attributes["steps_and_bumps"]
-    with pytest.raises(ValueError, match="steps_and_bumps: missing; allowed: a mapping with every attribute of"):
+    with pytest.raises(
+        ValueError, match="steps_and_bumps: missing; allowed: a mapping with every attribute of"
+    ):
         sp.Scene.from_attributes(attributes)
 
 
