@@ -201,7 +201,7 @@ def damage_zone(table, path):
     assert 138.0 < numbers["value"]["transition_time"] < 142.0
     assert 0.97 < numbers["value"]["transition_length"] < 1.05
     text = path.read_text(encoding="utf-8")
-    assert "<td>2.604 km/s</td>" in text and "without a factor of two" in text
+    assert "<td>2.604 km/s</td>" in text and "lacks a factor of two" in text
 
 
 # A cheap target of each example that shows what its comment promises.
