@@ -57,7 +57,7 @@ VARIABLES |= {
     "everywhere, in units of H",
     "limit_time": "time of the event after which the exact solution is not known everywhere",
     "limit_reason": "reason why the exact solution is unknown where a wave from the event at "
-    "`limit_position` and `limit_time` has arrived; empty if it is known everywhere",
+    "`limit_time` has arrived; empty if it is known everywhere",
     "point": "number of the run in its simulation, counted from 0",
     "row_size": "number of blocks of a run",
     "row_start": "index of the first block of a run in the arrays of all blocks",
