@@ -1,9 +1,7 @@
-"""The Python of the README runs as it stands there, and its overlay is that of its page."""
+"""The Python of the README runs as it stands there. This test needs only the library."""
 
 import re
 from pathlib import Path
-
-import yaml
 
 import slippulse as sp
 
@@ -25,13 +23,3 @@ def test_the_python_of_the_readme_runs(tmp_path, monkeypatch):
         physics = scene.prestress, scene.gamma, scene.damping_ratio
         exact = sp.theory.Rupture(*physics, duration=scene.duration).transition
         assert abs(sp.measure(run)["transition_time"] - exact.time) < scene.dx
-
-
-def test_the_overlay_of_a_stress_profile_is_that_of_its_page(project):
-    block = re.search(
-        r"^    scenes:\n(?:     .*\n)+", README.read_text(encoding="utf-8"), re.MULTILINE
-    )
-    page = (project / "docs/stress_profile.md").read_text(encoding="utf-8")
-    overlay = re.search(r"^```yaml\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    assert block and overlay
-    assert yaml.safe_load(block[0]) == yaml.safe_load(overlay[1])

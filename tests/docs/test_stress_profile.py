@@ -24,6 +24,12 @@ def blocks(project):
     return [code for _, code in found]
 
 
+def test_the_readme_has_the_overlay_of_the_page(blocks, project):
+    readme = (project / "README.md").read_text(encoding="utf-8")
+    block = re.search(r"^    scenes:\n(?:     .*\n)+", readme, re.MULTILINE)
+    assert block and yaml.safe_load(block[0]) == yaml.safe_load(blocks[1])
+
+
 def test_the_script_of_the_page_runs(blocks, tmp_path, monkeypatch, shipped):
     monkeypatch.chdir(tmp_path)
     maker, overlay, script = blocks
