@@ -1,5 +1,6 @@
 """Results on random hard scenes do not depend on scale, direction, duration or panels."""
 
+import os
 from dataclasses import replace
 from functools import cache
 
@@ -193,6 +194,10 @@ def test_stick_times_that_are_only_rounding_are_refused():
         rupture.stick_time(1.0)
 
 
+@pytest.mark.skipif(
+    bool(os.environ.get("SLIPPULSE_NUDGED")),
+    reason="other last digits may move this scene to the side on which it is refused",
+)
 def test_velocities_as_small_as_rounding_errors_do_not_stick_a_block():
     prestress, x = almost_no_prestress(-1e-13), np.array([-3.0, 0.0, 1.0, 3.0])
     one, fine = (
