@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import os
+import zlib
 
 import numpy as np
 import pytest
@@ -70,7 +71,8 @@ def inputs_nudged_in_their_last_bits(monkeypatch):
     def nudged_law(**keys):
         # Half of a lattice is the same scene as the whole: equal arguments are moved equally.
         scene = keys["prestress"], keys["gamma"], keys["damping_ratio"]
-        rng = np.random.default_rng(abs(hash(scene)) % 2**32)
+        # The hash of None, which a pre-stress may contain, differs from run to run.
+        rng = np.random.default_rng(zlib.crc32(repr(scene).encode()))
         return fast_front.FastFront(**{name: nudged(value, rng) for name, value in keys.items()})
 
     as_numbers = rupture.as_numbers

@@ -194,16 +194,18 @@ def test_stick_times_that_are_only_rounding_are_refused():
         rupture.stick_time(1.0)
 
 
-@pytest.mark.skipif(
-    bool(os.environ.get("SLIPPULSE_NUDGED")),
-    reason="other last digits may move this scene to the side on which it is refused",
-)
 def test_velocities_as_small_as_rounding_errors_do_not_stick_a_block():
+    """Each solution is right. With other last digits the scene may be refused, but not wrong."""
     prestress, x = almost_no_prestress(-1e-13), np.array([-3.0, 0.0, 1.0, 3.0])
-    one, fine = (
-        Rupture(prestress, 0.0, 0.1, "total", 25.0, refinement).stick_time(x)
-        for refinement in (1, 2)
-    )
-    assert fine == pytest.approx(one, rel=1e-6)
-    # Stick times on a lattice with the spacing 0.01.
-    assert one == pytest.approx([10.6383, 9.7423, 10.1772, 10.8598], rel=1e-2)
+    solutions = []
+    for refinement in (1, 2):
+        try:
+            rupture = Rupture(prestress, 0.0, 0.1, "total", 25.0, refinement)
+            solutions.append(rupture.stick_time(x))
+        except ValueError as error:
+            assert os.environ.get("SLIPPULSE_NUDGED")
+            assert "as small as rounding errors" in str(error)
+    for stick_times in solutions:
+        assert stick_times == pytest.approx(solutions[0], rel=1e-6)
+        # Stick times on a lattice with the spacing 0.01.
+        assert stick_times == pytest.approx([10.6383, 9.7423, 10.1772, 10.8598], rel=1e-2)
