@@ -521,7 +521,7 @@ class LayerKeys(Block):
     )
     density: Positive = key("density [kg/m3]")
     static_friction: Positive = key(
-        "coefficient of static friction, larger than that of kinetic friction"
+        "coefficient of static friction, larger than `kinetic_friction`"
     )
     kinetic_friction: NonNegative = key("coefficient of kinetic friction")
     normal_stress: Positive = key("normal stress on the interface [Pa]")
@@ -783,11 +783,9 @@ class Steps(Block):
 
 
 class DamageZone(Block):
-    stiffness_ratios: Steps = key(
-        "ratios G/G_r: shear modulus of the damage zone divided by that of the host rock"
-    )
+    stiffness_ratios: Steps = key("ratios G/G_r of the shear moduli of damage zone and host rock")
     thickness_ratios: Distinct[Ratio] = key(
-        "ratios H_r/H: thickness of the host rock divided by that of the damage zone. Each ratio"
+        "ratios H_r/H of the thicknesses of host rock and damage zone. Each ratio"
         " is drawn as a curve"
     )
 
